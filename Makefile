@@ -2,10 +2,11 @@
 PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
+CACHE := $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/symfpu# of this user: a fresh clone finds machine code and types there
 ONE_THREAD := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 # workers of pytest share the cores
 OLD := -W ignore::DeprecationWarning -W ignore::PendingDeprecationWarning # old releases call newer ones of each other
 
-.PHONY: install reproduce test lowest bench sweeps atlas long generated equations citation doors verdicts docs links clean
+.PHONY: install reproduce test lowest bench fuzz sweeps atlas long fingerprint generated equations citation doors verdicts docs links clean
 
 install: .venv/installed
 
@@ -20,7 +21,7 @@ reproduce: install  ## the main job: the paper's table and figures, into $(OUT)/
 test: install  ## lint, types, floors, tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
+	$(BIN)/mypy --cache-dir $(CACHE)/mypy
 	$(BIN)/lint-imports
 	$(ONE_THREAD) $(BIN)/python -m pytest -n auto --dist loadfile
 
@@ -43,6 +44,12 @@ atlas: install  ## where tori end, docs/atlas.md: what its data lack first (abou
 
 long: install  ## tests that `make test` leaves out: minutes of exact checks, notebooks, whole figures
 	$(ONE_THREAD) $(BIN)/python -m pytest -m long -n auto --dist worksteal
+
+fingerprint: install  ## the numbers of every function beside those of tests/fingerprint; UPDATE=1 writes what has changed, with a reason
+	$(ONE_THREAD) $(BIN)/python -m tests.fingerprint $(if $(UPDATE),--update)
+
+fuzz: install  ## 20,000 calls of the public face with odd types and sizes, with the counts
+	$(ONE_THREAD) $(BIN)/python -m tests.fuzz.run 0 20000
 
 bench: install  ## speed and memory, each beside a matrix product; kept, and compared with the last run on a like machine
 	$(BIN)/python -m pytest tests/benchmarks --benchmark-only --benchmark-autosave --benchmark-columns=median,min,max -o addopts=--strict-markers

@@ -397,11 +397,10 @@ def folds_table(found: Atlas) -> str:
         for N in LENGTHS:
             cells = [energy(by_name[name].get(N)) for name in (*SERIES, "fold")]
             fold = by_name["fold"].get(N)
-            what = (
-                ""
-                if fold is None
-                else f"mode {fold.details['mode']}, harmonic {fold.details['harmonic'][0]}"
-            )
+            what = "" if fold is None else "not sure"
+            if fold is not None and fold.details.get("mode"):
+                mode, (harmonic, *_) = fold.details["mode"], fold.details["harmonic"]
+                what = f"mode {mode}, harmonic {harmonic}"
             size = "" if fold is None else f"{fold.energy / unit(model, N, 1):.3f}"
             rows.append(
                 [model, str(N), *cells, what, size, energy(by_name["stability"].get(N))]

@@ -61,7 +61,8 @@ class Case:
 
     @cached_property
     def series(self) -> Any:
-        self.lindstedt()
+        if self.chain.periodic:
+            return self.waves
         return self.lindstedt(SEEDS, self.torus.frequencies, 4)
 
     @cached_property
@@ -108,15 +109,13 @@ class Case:
             [self.chain.mode_numbers.index(q) for q in SEEDS]
         ]
         shift = 1e-4 if self.chain.potential.even else 1e-5
-        return symfpu.travelling_waves(
-            self.chain, SEEDS, list(frequencies * (1 + shift)), 3
-        )
+        return self.lindstedt(SEEDS, list(frequencies * (1 + shift)), 3)
 
     @property
     def solution(self) -> Any:
         """A torus of its own kind."""
         ring = self.chain.periodic
-        return symfpu.travelling_torus(self.waves) if ring else self.of(lambda: self.torus)
+        return symfpu.solve_amplitudes(self.waves) if ring else self.of(lambda: self.torus)
 
     @cached_property
     def family(self) -> Any:
@@ -266,7 +265,7 @@ SERIES: dict[str, Door] = {
     "normal_frequency_series, no frequencies": lambda c: symfpu.normal_frequency_series(
         c.chain, SEEDS, 4, 2
     ),
-    "pade_amplitudes": lambda c: symfpu.pade_amplitudes(c.series, c.solved.amplitudes),
+    "pade_amplitudes": lambda c: symfpu.pade_amplitudes(c.series, c.solution.amplitudes),
     "pade_frequencies": lambda c: symfpu.pade_frequencies(c.series, c.amplitudes),
     "pade_poles": lambda c: symfpu.pade_poles(c.series, 1, c.amplitudes),
     "resum": lambda c: symfpu.resum(c.of(lambda: c.torus)),
@@ -281,8 +280,6 @@ SERIES: dict[str, Door] = {
     "torus_at_energy": lambda c: symfpu.torus_at_energy(
         c.chain, SEEDS, c.size**2 / 20, harmonic=False, order=4
     ),
-    "travelling_torus": lambda c: symfpu.travelling_torus(c.waves),
-    "travelling_waves": lambda c: c.waves,
     "unfold": lambda c: symfpu.unfold(c.of(lambda: c.torus)),
 }
 NEWTON: dict[str, Door] = {
@@ -321,7 +318,6 @@ NEWTON: dict[str, Door] = {
     ),
     "refine_at_start": lambda c: symfpu.refine_at_start(c.solution, c.amplitudes),
     "travelling_breather": lambda c: c.wave,
-    "shoot": lambda c: symfpu.shoot(c.chain, 1, c.breather.frequency),
     "twist": lambda c: symfpu.twist(c.periodic),
     "twist_at_rest": lambda c: symfpu.twist_at_rest(c.chain, SEEDS),
 }

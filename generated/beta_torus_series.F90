@@ -34,7 +34,8 @@
 !   omega        (2): the corrected frequencies omega(A)
 !   jacobian     (2, 2): jacobian(i, j) is the derivative of omega(i) by amplitudes(j)
 !
-! Two such modules in one program: use beta_torus_series, only: beta_torus_series_positions => positions.
+! Two such modules in one program:
+! use beta_torus_series, only: beta_torus_series_positions => positions.
 ! All quantities are dimensionless. How well the equations of motion hold depends on the amplitudes, and on frequencies
 ! being omega(A). Arrays of other shapes stop the program.
 ! A call sums the powers of the amplitudes in all 543 coefficients first: give it many times at once. Tables are
@@ -371,10 +372,12 @@ contains
       phi = phases
     end if
     if (present(Q)) then
-      if (size(Q, 1) /= modes .or. size(Q, 2) /= size(t)) error stop 'beta_torus_series: Q must have shape (15, size(t))'
+      if (size(Q, 1) /= modes .or. size(Q, 2) /= size(t)) &
+        error stop 'beta_torus_series: Q must have shape (15, size(t))'
     end if
     if (present(P)) then
-      if (size(P, 1) /= modes .or. size(P, 2) /= size(t)) error stop 'beta_torus_series: P must have shape (15, size(t))'
+      if (size(P, 1) /= modes .or. size(P, 2) /= size(t)) &
+        error stop 'beta_torus_series: P must have shape (15, size(t))'
     end if
     n = min(times, size(t))
     allocate (re(n, -highest:highest, seeds), im(n, -highest:highest, seeds), cosine_sums(n, modes), sine_sums(n, modes))

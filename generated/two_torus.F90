@@ -29,7 +29,8 @@
 !   phases   (2): angles phi in radians, one a seed in the order above; left out, they are
 !     0.0, 0.0
 !
-! Two such modules in one program: use two_torus, only: two_torus_positions => positions.
+! Two such modules in one program:
+! use two_torus, only: two_torus_positions => positions.
 ! All quantities are dimensionless. E_q = (P_q**2 + Omega_q**2 Q_q**2) / 2 is the energy of mode q, H the total energy.
 ! Arrays of other shapes stop the program. Tables are only read and work arrays are allocated by each call: the
 ! procedures may be called from several threads.
@@ -545,10 +546,12 @@ contains
       phi = phases
     end if
     if (present(Q)) then
-      if (size(Q, 1) /= modes .or. size(Q, 2) /= size(t)) error stop 'two_torus: Q must have shape (15, size(t))'
+      if (size(Q, 1) /= modes .or. size(Q, 2) /= size(t)) &
+        error stop 'two_torus: Q must have shape (15, size(t))'
     end if
     if (present(P)) then
-      if (size(P, 1) /= modes .or. size(P, 2) /= size(t)) error stop 'two_torus: P must have shape (15, size(t))'
+      if (size(P, 1) /= modes .or. size(P, 2) /= size(t)) &
+        error stop 'two_torus: P must have shape (15, size(t))'
     end if
     n = min(times, size(t))
     allocate (re(n, -highest:highest, seeds), im(n, -highest:highest, seeds), cosine_sums(n, modes), sine_sums(n, modes))

@@ -33,7 +33,8 @@
 !   omega        (2): the corrected frequencies omega(A)
 !   jacobian     (2, 2): jacobian(i, j) is the derivative of omega(i) by amplitudes(j)
 !
-! Two such modules in one program: use two_torus_series, only: two_torus_series_positions => positions.
+! Two such modules in one program:
+! use two_torus_series, only: two_torus_series_positions => positions.
 ! All quantities are dimensionless. How well the equations of motion hold depends on the amplitudes, and on frequencies
 ! being omega(A). Arrays of other shapes stop the program.
 ! A call computes the coefficients of all harmonics first: give it many times at once.
@@ -158,10 +159,12 @@ contains
       phi = phases
     end if
     if (present(Q)) then
-      if (size(Q, 1) /= modes .or. size(Q, 2) /= size(t)) error stop 'two_torus_series: Q must have shape (15, size(t))'
+      if (size(Q, 1) /= modes .or. size(Q, 2) /= size(t)) &
+        error stop 'two_torus_series: Q must have shape (15, size(t))'
     end if
     if (present(P)) then
-      if (size(P, 1) /= modes .or. size(P, 2) /= size(t)) error stop 'two_torus_series: P must have shape (15, size(t))'
+      if (size(P, 1) /= modes .or. size(P, 2) /= size(t)) &
+        error stop 'two_torus_series: P must have shape (15, size(t))'
     end if
     A1 = amplitudes(1)
     A2 = amplitudes(2)

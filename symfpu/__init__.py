@@ -23,7 +23,7 @@ def _homes() -> dict[str, str]:
 
 
 _HOMES = _homes()
-__all__ = sorted(_HOMES)
+__all__ = sorted([*_HOMES, "plots"])
 
 
 def __getattr__(name: str) -> Any:

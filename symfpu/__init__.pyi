@@ -28,13 +28,10 @@ from symfpu.series.expandable import ExpandableTerm as ExpandableTerm
 from symfpu.series.expandable import expandable_term as expandable_term
 from symfpu.series.lindstedt import lindstedt as lindstedt
 from symfpu.series.named_parts import NamedParts as NamedParts
-from symfpu.series.sample import EnergyChanges as EnergyChanges
 from symfpu.series.sample import FrequencyChanges as FrequencyChanges
 from symfpu.series.sample import SampledSeries as SampledSeries
 from symfpu.series.sample import sample_series as sample_series
 from symfpu.series.series import LindstedtSeries as LindstedtSeries
-from symfpu.series.travelling import TravellingSeries as TravellingSeries
-from symfpu.series.travelling import travelling_waves as travelling_waves
 
 # tori from series
 from symfpu.tori.amplitudes import AmplitudeHistory as AmplitudeHistory
@@ -49,17 +46,14 @@ from symfpu.tori.resummation import pade_amplitudes as pade_amplitudes
 from symfpu.tori.resummation import pade_frequencies as pade_frequencies
 from symfpu.tori.resummation import pade_poles as pade_poles
 from symfpu.tori.resummation import resum as resum
-from symfpu.tori.ring_torus import RingTorus as RingTorus
-from symfpu.tori.ring_torus import travelling_torus as travelling_torus
-from symfpu.tori.ring_torus import unfold as unfold
 from symfpu.tori.torus import QTorus as QTorus
 from symfpu.tori.torus import RootCertificate as RootCertificate
+from symfpu.tori.unfolding import unfold as unfold
 from symfpu.tori.verdict import Assessment as Assessment
 from symfpu.tori.verdict import assess as assess
 
 # tori by Newton's method
 from symfpu.refinement.digits import PreciseTorus as PreciseTorus
-from symfpu.refinement.ring_tori import RefinedRingTorus as RefinedRingTorus
 from symfpu.refinement.through import refine_at_start as refine_at_start
 from symfpu.refinement.refined_torus import RefinedTorus as RefinedTorus
 from symfpu.refinement.tori import refine as refine
@@ -78,14 +72,11 @@ from symfpu.breathers.at_energy import breather_at_energy as breather_at_energy
 from symfpu.breathers.balance import PeriodicOrbit as PeriodicOrbit
 from symfpu.breathers.balance import breather_at_amplitude as breather_at_amplitude
 from symfpu.breathers.balance import periodic_orbit as periodic_orbit
-from symfpu.breathers.digits import PreciseOrbit as PreciseOrbit
-from symfpu.breathers.digits import periodic_orbit_digits as periodic_orbit_digits
+from symfpu.breathers.precise_orbit import periodic_orbit_digits as periodic_orbit_digits
 from symfpu.certified.existence import ExistenceProof as ExistenceProof
 from symfpu.certified.existence import prove_existence as prove_existence
 from symfpu.breathers.floquet import Floquet as Floquet
 from symfpu.breathers.floquet import floquet as floquet
-from symfpu.breathers.shooting import ShotOrbit as ShotOrbit
-from symfpu.breathers.shooting import shoot as shoot
 from symfpu.certified.stability_proof import StabilityProof as StabilityProof
 from symfpu.certified.stability_proof import prove_stability as prove_stability
 
@@ -112,8 +103,8 @@ from symfpu.normal.search import normal_modes as normal_modes
 from symfpu.normal.self_consistent import solve_normal_frequency as solve_normal_frequency
 
 # families in energy
-from symfpu.families.continuation import Event as Event
-from symfpu.families.continuation import Member as Member
+from symfpu.families.members import Event as Event
+from symfpu.families.members import Member as Member
 from symfpu.families.family import Family as Family
 from symfpu.families.following import family as family
 from symfpu.families.family import member_at_energy as member_at_energy
@@ -231,11 +222,10 @@ from symfpu.notebook import init_printing as init_printing
 # errors
 from symfpu.action_angle.newton_twist import NoTwist as NoTwist
 from symfpu.breathers.at_energy import NoBreatherAtEnergy as NoBreatherAtEnergy
-from symfpu.breathers.balance import NoPeriodicOrbit as NoPeriodicOrbit
+from symfpu.breathers.equations import NoPeriodicOrbit as NoPeriodicOrbit
 from symfpu.certified.enclosures import NoStabilityProof as NoStabilityProof
 from symfpu.certified.existence import NoExistenceProof as NoExistenceProof
 from symfpu.certified.stay import NoStayProof as NoStayProof
-from symfpu.breathers.shooting import ShootingFailed as ShootingFailed
 from symfpu.dynamics.frame_run import OrbitLost as OrbitLost
 from symfpu.dynamics.stopping import EscapedOrbit as EscapedOrbit
 from symfpu.dynamics.stopping import OrbitStopped as OrbitStopped

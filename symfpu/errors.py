@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+LONGEST_SHOWN = 300  # characters of a value in a message
+
 
 class SymfpuError(Exception):
     """Base of every error that this package raises on purpose.
@@ -65,10 +67,21 @@ class InputError(SymfpuError, ValueError):
         self.value = value
         self.allowed = allowed
         self.advice = advice
-        super().__init__(f"{argument} = {value!r}: allowed is {allowed}; {advice}")
+        super().__init__(f"{argument} = {shown(value)}: allowed is {allowed}; {advice}")
 
 
-def _what_fits(needed: int, free: int) -> str:
+def shown(value: object) -> str:
+    """A value on one line of at most LONGEST_SHOWN characters."""
+    try:
+        text = " ".join(repr(value).split())
+    except ValueError:  # an integer of more digits than Python prints
+        text = f"{type(value).__name__} of many digits"
+    if len(text) <= LONGEST_SHOWN:
+        return text
+    return f"{text[:LONGEST_SHOWN]}... ({len(text)} characters)"
+
+
+def what_fits(needed: int, free: int) -> str:
     return f"what fits into the {free:,} bytes of free memory ({needed:,} are needed)"
 
 
@@ -85,7 +98,7 @@ class TooLarge(InputError):
         self.needed = needed
         self.free = free
         self.largest = largest
-        allowed = _what_fits(needed, free)
+        allowed = what_fits(needed, free)
         advice = "take fewer seeds or a shorter chain"
         if largest >= 0:
             advice = f"take order {largest} or less, or fewer seeds"
@@ -109,7 +122,7 @@ class TorusTooLarge(InputError):
         self.needed = needed
         self.free = free
         self.largest = largest
-        allowed = _what_fits(needed, free)
+        allowed = what_fits(needed, free)
         advice = "take a shorter chain"
         if largest:
             advice = f"take most_harmonics={largest} or less, or a larger tolerance"

@@ -61,8 +61,8 @@ PERIODIC_ORBITS = (
     PeriodicOrbit(32, "0.33", 25, "1.8830741847088537", 0.05121215917411, 0.0046499993611, 20),
 )
 
-# Two of the amplitudes above are misprinted; the doubles of the package do not see it. By three routes (our fixed-point
-# series, mode space at 60 digits, balls on all bonds; tests/series/test_digits.py) they are, rounded to 40 places: in the first
+# Two of the amplitudes above are misprinted; the doubles of the package do not see it. By two routes (our fixed-point
+# series and mode space at 60 digits; tests/series/test_digits.py) they are, rounded to 40 places: in the first
 # one the digits 695 were inserted after the 22nd place, in the second one the 23rd digit is 4, not 6.
 MISPRINTED = {
     "0.5849361492164492144956695780687516427207": "0.5849361492164492144956780687516427206726",

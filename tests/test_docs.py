@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 import typer
 
-from symfpu.cli.main import app, main
+from symfpu.cli.application import app
+from symfpu.cli.main import main
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -40,56 +41,34 @@ def commands(text):
     return [words for line in text.splitlines() if (words := shlex.split(line, comments=True))]
 
 
-def run(page, folder, monkeypatch, skipped):
-    """Every block of a page but those with a word that is skipped."""
+def run(page, folder, monkeypatch, *words):
+    """Every block of a page that has no word, or one of these."""
     monkeypatch.chdir(folder)
     namespace = {"__name__": "__main__"}
     for language, word, text in blocks(page):
-        if word in skipped:
+        if word not in {"", *words}:
             continue
         if language == "python":
             exec(compile(text, page.name, "exec"), namespace)
         else:
-            for program, *words in commands(text):
+            for program, *given in commands(text):
                 if program == "symfpu":
-                    assert main(words) == 0, words
+                    assert main(given) == 0, given
 
 
-RUNNING = [page for page in PAGES if any(word == "" for _, word, _ in blocks(page))]
 LONG = [page for page in PAGES if any(word == "long" for _, word, _ in blocks(page))]
 
 
 # seconds of compilers, orbits, pictures
-SLOW_PAGES = {
-    "precision.md",
-    "normal-modes.md",
-    "existence.md",
-    "README.md",
-    "figures.md",
-    "asymptotics.md",
-    "actions.md",
-    "programs.md",
-    "tables.md",
-    "export.md",
-    "dynamics.md",
-    "localization.md",
-    "plots.md",
-    "families.md",
-    "sweeps.md",
-}
+SLOW = {"actions", "asymptotics", "dynamics", "existence", "export", "figures", "localization", "plots", "precision", "programs"}
+SLOW |= {"sweeps", "tables", *(page.stem for page in LONG)}
+RUNNING = [page for page in PAGES if any(word in {"", "long"} for _, word, _ in blocks(page))]
+PARAMETERS = [pytest.param(page, id=page.name, marks=[pytest.mark.long] * (page.stem in SLOW)) for page in RUNNING]
 
 
-@pytest.mark.parametrize(
-    "page", [pytest.param(page, id=page.name, marks=[pytest.mark.long] * (page.name in SLOW_PAGES)) for page in RUNNING]
-)
+@pytest.mark.parametrize("page", PARAMETERS)
 def test_page_runs(page, tmp_path, monkeypatch):
-    run(page, tmp_path, monkeypatch, {"long", "parsed"})
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("page", LONG, ids=lambda page: page.name)
-def test_page_runs_whole(page, tmp_path, monkeypatch):
-    run(page, tmp_path, monkeypatch, {"parsed"})
+    run(page, tmp_path, monkeypatch, "long")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -129,18 +108,3 @@ def test_links_lead_somewhere(page):
 @pytest.mark.parametrize("file", NAMED, ids=lambda file: os.fspath(file.relative_to(ROOT)))
 def test_files_that_are_named_exist(file):
     assert [path for path in PATH.findall(file.read_text()) if not (ROOT / path).exists()] == []
-
-
-def test_hosted_runs_name_targets():
-    """Every job of CI, and the site is one of them."""
-    named = set(re.findall(r"\bmake (\w+)", HOSTED.read_text()))
-    assert {"docs", "links", "long", "test"} <= named <= set(TARGET.findall((ROOT / "Makefile").read_text()))
-
-
-TEST = re.compile(r"`(test_\w+)`")
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_tests_that_are_named_exist(page):
-    written = "\n".join(file.read_text() for file in (ROOT / "tests").rglob("*.py"))
-    assert [name for name in TEST.findall(page.read_text()) if f"def {name}(" not in written] == []

@@ -18,7 +18,6 @@ def _loaded(name):
 index = _loaded("make_equations")
 ITEMS = index.items()
 CITED = index.citations()
-USED_BY_NOTHING = ("Rqrapp", "dddd", "ddda")
 
 
 @pytest.mark.parametrize("label", ITEMS)
@@ -34,17 +33,6 @@ def test_what_lives_somewhere_is_cited_there(label):
 
 def test_no_docstring_cites_what_the_paper_does_not_have():
     assert {label: places for label, places in CITED.items() if label not in ITEMS} == {}
-
-
-def test_labels_without_use_are_few():
-    assert tuple(label for label, item in ITEMS.items() if "unused" in item) == USED_BY_NOTHING
-
-
-def test_every_label_stands_once():
-    _, parts = index.parts()
-    labels = [item["label"] for part in parts for item in part["items"]]
-    assert len(labels) == len(set(labels))
-    assert sum(" " not in label and label not in ("Lemma", "Proposition") for label in labels) == 46  # equations of the source
 
 
 def test_the_page_is_what_the_generator_writes():
@@ -71,17 +59,3 @@ def test_pages_cite_labels_of_the_paper(page):
 )
 def test_citations_are_read(text, labels):
     assert index.cited(text, list(ITEMS)) == labels
-
-
-@pytest.mark.parametrize(
-    ("label", "file", "name"),
-    [
-        ("omeser", "symfpu/tori/amplitudes.py", "solve_amplitudes"),
-        ("dk", "symfpu/chain/propagation.py", "excitation_sequence"),
-        ("Lm", "symfpu/series/divisors.py", ""),
-        ("eksa2", "symfpu/localization/laws.py", "profile_law"),
-        ("section 4", "symfpu/dynamics/alignment.py", "alignment_indices"),
-    ],
-)
-def test_what_a_reader_looks_for_first_is_there(label, file, name):
-    assert (file, name) in index.homes(ITEMS[label])

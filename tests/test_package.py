@@ -3,6 +3,7 @@
 import ast
 import importlib
 import inspect
+import re
 import subprocess
 import sys
 import tomllib
@@ -14,7 +15,6 @@ import symfpu
 
 ROOT = Path(symfpu.__file__).parent
 HEAVY = ("numpy", "symengine", "sympy", "numba", "matplotlib", "scipy", "IPython", "pandas", "xarray")
-IMPORT_SECONDS = 0.3  # ten times what it takes: a machine may be busy
 
 
 def _run(code):
@@ -25,11 +25,6 @@ def _run(code):
 
 def test_importing_the_package_loads_nothing_heavy():
     assert _run(f"import sys, symfpu; print([name for name in {HEAVY} if name in sys.modules])") == "[]"
-
-
-def test_importing_the_package_takes_no_time():
-    code = "import time; start = time.perf_counter(); import symfpu; print(time.perf_counter() - start)"
-    assert min(float(_run(code)) for _ in range(3)) < IMPORT_SECONDS
 
 
 def test_importing_the_package_changes_how_terms_print_only_inside_ipython():
@@ -44,7 +39,7 @@ def test_every_public_name_stands_once_in_the_stub_and_is_what_it_says():
     imports = [line for line in stub.body if isinstance(line, ast.ImportFrom)]
     lines = [line for line in imports if line.module != "symfpu"]
     names = [alias.name for line in lines for alias in line.names]
-    assert sorted(names) == symfpu.__all__ == sorted(set(names))
+    assert sorted([*names, "plots"]) == symfpu.__all__ == sorted({*names, "plots"})
     reexported = [alias.asname == alias.name for line in lines for alias in line.names]
     assert all(reexported)
     for line in lines:
@@ -55,9 +50,10 @@ def test_every_public_name_stands_once_in_the_stub_and_is_what_it_says():
 
 
 def test_the_room_of_pictures_is_there_without_an_import_of_its_own():
+    """By its name, and by a star."""
     known = "'symfpu.plots' in sys.modules, 'matplotlib' in sys.modules"
-    code = f"import sys, symfpu; print({known}); symfpu.plots.spectrum; print({known})"
-    assert _run(code).splitlines() == ["False False", "True False"]
+    code = f"import sys, symfpu; print({known}); symfpu.plots.spectrum; print({known})\nfrom symfpu import *; print(plots.__name__)"
+    assert _run(code).splitlines() == ["False False", "True False", "symfpu.plots"]
     stub = ast.parse((ROOT / "__init__.pyi").read_text())
     (rooms,) = [line for line in stub.body if isinstance(line, ast.ImportFrom) and line.module == "symfpu"]
     assert [(room.name, room.asname) for room in rooms.names] == [("plots", "plots")]
@@ -83,13 +79,19 @@ def test_type_checkers_know_the_types_of_public_names(tmp_path):
 @pytest.mark.long
 def test_no_public_name_is_hidden_by_a_module_of_the_same_name():
     rooms = {path.stem for path in ROOT.iterdir()}
-    assert not rooms & set(symfpu.__all__)
+    assert rooms & set(symfpu.__all__) == {"plots"}
     code = "import symfpu, types; print([n for n in symfpu.__all__ if isinstance(getattr(symfpu, n), types.ModuleType)], dir(symfpu)[0])"
-    assert _run(code).split()[0] == "[]"
+    assert _run(code).split()[0] == "['plots']"
     assert symfpu.__all__ == sorted(set(symfpu.__all__), key=lambda name: (not name[0].isupper(), name))
     assert set(symfpu.__all__) <= set(dir(symfpu))
     with pytest.raises(AttributeError, match="no attribute 'lindsted'"):
         _ = symfpu.lindsted
+
+
+def test_every_public_name_is_listed_once_as_stable_or_provisional():
+    page = (ROOT.parent / "docs" / "stability.md").read_text()
+    rows = [line.strip("|").split("|") for line in page.splitlines() if line.startswith("| ")][2:]
+    assert sorted(name for row in rows for cell in row[1:] for name in re.findall(r"`(\w+)`", cell)) == symfpu.__all__
 
 
 def test_every_public_name_has_a_docstring():

@@ -3,7 +3,6 @@
 import re
 import subprocess
 import sys
-import time
 from collections import Counter
 from pathlib import Path
 
@@ -16,65 +15,22 @@ sys.path.insert(0, str(ROOT / "docs"))
 
 import make_site  # noqa: E402
 from docutils.utils.math import MathError  # noqa: E402
-from press import check, docstrings, formulas, gallery, links, plain, topics  # noqa: E402
+from press import check, formulas, gallery, links, topics  # noqa: E402
 
-SECONDS = 6.0  # of processor time, where others use the processor; alone an example takes less than one or two
 VERDICTS = ("holds", "holds in part", "does not hold", "undecided")
 
 
 def test_every_public_name_is_in_one_topic():
     names = [name for topic in topics.topics() for name in topic.names]
     pictures = re.findall(r"(\w+) as \1,?$", (ROOT / "symfpu/plots/__init__.py").read_text(), re.MULTILINE)
-    assert sorted(names) == sorted([*(f"symfpu.{name}" for name in symfpu.__all__), *(f"symfpu.plots.{name}" for name in pictures)])
-
-
-def test_a_new_group_and_a_new_name_are_taken_from_the_stub():
-    first_group = "# the first, and more\nfrom symfpu.a import b as b\nfrom symfpu.a import (\n    c as c,\n)\n"
-    stub = first_group + "\n# second\nfrom symfpu.d import e as e\n"
-    first, second = topics.topics(stub)
-    assert (first.title, first.rest, first.slug, first.names) == ("The first", "More.", "the-first", ("symfpu.b", "symfpu.c"))
-    assert (second.title, second.rest, second.names) == ("Second", "", ("symfpu.e",))
-
-
-def test_every_topic_has_a_page_of_its_own():
-    found = topics.topics()
-    assert len({topic.slug for topic in found}) == len(found)
+    flat = {f"symfpu.{name}" for name in symfpu.__all__} - {"symfpu.plots"}
+    assert sorted(names) == sorted([*flat, *(f"symfpu.plots.{name}" for name in pictures)])
 
 
 def test_what_results_inherit_is_shared_and_not_public():
     shared = topics.shared_classes(["symfpu.QTorus", "symfpu.RefinedTorus", "symfpu.Orbit"])
     assert "symfpu.tori.quasiperiodic.QuasiPeriodic" in shared
     assert not {name.rpartition(".")[2] for name in shared} & set(symfpu.__all__)
-
-
-@pytest.mark.parametrize(
-    ("text", "written"),
-    [
-        ("|Q_q|^2 and 2 * EPS", r"\|Q\_q\|^2 and 2 \* EPS"),
-        ("as `save` does; omega_", r"as ``save`` does; omega\_"),
-        ("`refine`d", r"``refine``\ d"),
-    ],
-)
-def test_plain_text_stays_what_it_is(text, written):
-    assert plain.prose(text) == written
-
-
-def test_parameter_lists_become_definitions():
-    lines = ["What it gives.", "", "a, b : two numbers,", "    both real. c : a third.", "Not d : which is prose.", "", ">>> 1", "1"]
-    assert docstrings.rest(lines, {"a", "b", "c"}) == [
-        "What it gives.",
-        "",
-        "**a**, **b**",
-        "    two numbers,",
-        "    both real.",
-        "**c**",
-        "    a third.",
-        "",
-        "Not d : which is prose.",
-        "",
-        ">>> 1",
-        "1",
-    ]
 
 
 def test_a_formula_is_drawn_by_the_browser():
@@ -105,32 +61,6 @@ def test_equations_are_found_where_they_are_cited():
     assert [found[0] for found in links.CITED.finditer("(Eqs. moda, modb) or Eq. omeser; Eq. nothing")] == ["Eqs. moda, modb", "Eq. omeser"]
 
 
-def test_the_gallery_has_its_twenty():
-    found = gallery.examples()
-    assert len(found) >= 20
-    assert len({example.title for example in found}) == len(found)
-    assert all(example.words for example in found)
-
-
-@pytest.mark.long
-@pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("example", gallery.examples(), ids=lambda one: one.name)
-def test_example_runs(example, tmp_path):
-    gallery.run(example, tmp_path / "first.png")  # compiles what it needs
-    start = time.process_time()
-    gallery.run(example, tmp_path / "picture.png")
-    assert time.process_time() - start < SECONDS
-    assert (tmp_path / "picture.png").read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.long
-@pytest.mark.filterwarnings("ignore")
-def test_what_an_example_prints_and_draws_is_kept(tmp_path):
-    one = gallery.Example("line", "A line", "", "import matplotlib.pyplot as plt\nplt.plot([0, 1])\nprint(1)")
-    assert gallery.run(one, tmp_path / "line.png") == "1\n"
-    assert (tmp_path / "line.png").read_bytes().startswith(b"\x89PNG")
-
-
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore")
 def test_an_example_without_a_picture_is_refused(tmp_path):
@@ -149,7 +79,7 @@ def test_the_paper_s_page_counts_its_verdicts():
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    """The whole site, built as `make docs` does, which fails for a lost link."""
+    """The whole site, built as `make docs` does, which fails for a lost link and for an example of the gallery that does not run."""
     folder = tmp_path_factory.mktemp("site")
     command = [sys.executable, str(ROOT / "docs/make_site.py"), str(folder)]
     built = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -165,7 +95,7 @@ def test_the_site_has_its_pages(site):
     examples = {f"gallery/{example.name}" for example in gallery.examples()}
     assert names >= written | tutorials | examples | {f"api/{topic.slug}" for topic in topics.topics()} | {"search"}
     documented = set.union(*(page.targets for page in site.values()))
-    assert {f"symfpu.{name}" for name in symfpu.__all__} <= documented
+    assert {f"symfpu.{name}" for name in symfpu.__all__} - {"symfpu.plots"} <= documented
 
 
 LINKS = {

@@ -108,9 +108,6 @@ RATE_OF_MU = 0.01
 # One number by two ways of a rounding or two: a mean, a quotient, a frequency that is read back.
 LAST_DIGIT = 1e-15
 
-# Half of the last place of a frequency that is printed with 16 decimal places.
-LAST_PRINTED_PLACE = 1e-16
-
 # Some ten roundings, or a number written with fifteen digits.
 TEN_ROUNDINGS = 1e-14
 
@@ -128,9 +125,6 @@ WHOLE_NUMBERS = 1e-9
 
 # Shifts omega - Omega are some 1e-4 of the frequencies, or less, and differences of them: EPS over that, and what follows from it.
 RELATIVE_SHIFT = 1e-9
-
-# Frequencies a part 1e-9 off the linear ones move divisors, some 1e-3, by a part 1e-6, and shifts by some times that.
-NEARLY_LINEAR = 1e-5
 
 # The same with shifts of some 1e-6.
 SMALL_SHIFT = 1e-8
@@ -160,9 +154,6 @@ COMMANDED_RESIDUAL = 1e-8
 
 # What `refine` is asked for where harmonics are counted.
 HIGH_ACCURACY = 1e-11
-
-# What the drift of the peer's energy allows an orbit is little enough to say something.
-ALLOWANCE = 2e-11
 
 # Coefficients are rounded once to doubles; before, they are solved to 1e-17 times the condition of Newton's matrix, that of
 # amplitudes by frequencies: omega over its shift, some 1e4.
@@ -207,6 +198,12 @@ ORBIT_IN_DOUBLES = 1e-13
 # An amplitude by shooting: omega - Omega is magnified in A; a relative error of the period of 1e-16 is 1e-16 omega / (2 (omega - Omega))
 # in A, 1e-11 at the smallest amplitude looked at, that of seed 25.
 SHOT_AMPLITUDE = 2e-11
+
+# Shooting: half a period, relative to its largest number, some roundings; the relative Newton step that ends the search at once, and
+# the one that ends it when residuals shrink no more, whose square is below rounding.
+SHOT_HALF_PERIOD = 1e-15
+SHOT_STEP = 1e-14
+SHOT_LAST_STEP = 1e-9
 
 # Members of a family at an energy and by harmonic balance, with harmonics to a tolerance of 1e-10.
 LOOSE_MEMBER = 1e-8
@@ -256,12 +253,6 @@ PEER_RELATIVE, PEER_ABSOLUTE = 1e-13, 1e-16
 
 # The same where it only has to find when an orbit escapes.
 ESCAPE_RELATIVE, ESCAPE_ABSOLUTE = 1e-10, 1e-12
-
-# The peer at these accuracies over 20 time units.
-PEER_ORBIT = 1e-11
-
-# Yoshida's scheme of order 4 at the steps where the others meet the peer.
-PEER_ORBIT_YOSHIDA = 5e-9
 
 # Coefficients of schemes are rounded to doubles; up to 18 of them, the largest 1.7.
 SCHEME_COEFFICIENTS = 4e-16
@@ -353,9 +344,6 @@ COARSE_STEP = 1e-6
 # Residuals that no convergence would leave.
 NO_CONVERGENCE = 1e-6
 
-# The share of a run that was done before it was killed.
-FIRST_PORTION = 2e-5
-
 # Random points that would hide a term: a bound of the probability.
 ERROR_PROBABILITY = 1e-6
 
@@ -390,26 +378,17 @@ BOUND_OF_FORTY = 1e-40
 # A bound after the last digits were spoilt in the 28th to 30th place: between these.
 SPOILT_LEAST, SPOILT_MOST = 1e-31, 1e-27
 
-# Sums of 40 digits, one of them lost; a vector in and out of modes loses another, and products of matrices two.
-SUM_OF_FORTY, TRANSFORM_OF_FORTY, PRODUCT_OF_FORTY = 1e-39, 1e-38, 1e-37
-
-# Half of the 37th place, and what a longer print would show.
-PLACE_37 = 0.51e-37
+# A vector of 40 digits in and out of modes loses two of them, products of matrices three.
+TRANSFORM_OF_FORTY, PRODUCT_OF_FORTY = 1e-38, 1e-37
 
 # Energies of states in 50 digits from a torus of 45.
 ENERGY_OF_FIFTY = 1e-44
-
-# Differences with step 1e-18 in 50 digits.
-DIFFERENCE_OF_FIFTY = 1e-20
 
 # Sources of 30 digits with sums in another order.
 SOURCE_OF_THIRTY = 1e-28
 
 # Amplitudes to 28 digits, the series to order 16.
 AMPLITUDE_OF_TWENTY_EIGHT = 1e-26
-
-# omega - Omega, some 1e-7, is known to 28 places.
-SHIFT_OF_TWENTY_EIGHT = 1e-20
 
 # Residuals of short series with many digits, far below doubles: the first order that is left out.
 SERIES_RESIDUAL, LONG_SERIES_RESIDUAL = 1e-20, 1e-24
@@ -433,6 +412,15 @@ STATED_LEAST, STATED_MOST = 1e-6, 1e-5
 
 # Poles of Pade sums of ten terms: roots of a denominator of doubles.
 POLES = 1e-6
+
+# What one rounding of a small double leaves; on another machine it may be 0.
+LEAST_OF_DOUBLES = 1e-22
+
+# Amplitudes of given resummed frequencies: a root finder in doubles on quotients of polynomials.
+RESUMMED_AMPLITUDE = 1e-9
+
+# Slopes of the frequencies of waves by central differences of squares of amplitudes: the cube of the step, and rounding over it.
+WAVE_SLOPE, WAVE_SLOPE_ROUNDING = 1e-6, 1e-8
 
 # The divergent torus of Fig. 1, summed, at order 30; at order 42.
 SUMMED_FIG1, SUMMED_FIG1_FURTHER = 1e-5, 1e-7
@@ -626,8 +614,9 @@ TWIST_DIFFERENCE = 1e-9
 # Lambda dI against domega of two tori of 40 digits whose amplitude differs by 2e-12 of itself: the square of that, times 1e4.
 PRECISE_TWIST = 1e-20
 
-# Ends of a definite range are enclosed to 1e-10 by an exact signature on both sides, from a guess rounded to 12 decimals.
-RANGE_END = 1.01e-10
+# Ends of a definite range are 2/3 - 2/(3 g), g an eigenvalue in doubles: 1e-16 of the largest, which is a hundred times the
+# least, in an end of 165.
+RANGE_END = 1e-11
 # A normal frequency is exact to the square of the eigenfunction's residual, 1e-20; what is left is the rounding of divisors
 # and of the frequencies of the torus, some EPS, over the part of the eigenfunction in its mode.
 NORMAL_CONVERGED = 1e-12
@@ -667,6 +656,8 @@ SAME_BOUNDS = 0.02
 MULTIPLIER_OF_PROOF = 1e-9
 # Of a proof of stability with 38 binary places: bounds of the rounding of doubles are a part of its Y, up to a half.
 ROUNDING_OF_RESIDUAL = 2.0
+# A frequency that moves by 1e-6 moves the rounded inverse of the block, too: |I - A DF| by some 1e-5 of itself.
+MOVED_INVERSE = 1.0001
 # The checker's inverse of a block has 32 binary places: five entries of a product with one of size 10 or so.
 INVERSE_OF_BLOCK = 2.0**-24
 
@@ -713,8 +704,6 @@ BESIDE_AN_ONSET = 1e-6
 # An amplitude beside a crossing where the modes can be told apart; the mean of both distances is of its square.
 BESIDE_A_CROSSING = 1e-3
 
-# Central differences with steps of 1e-5 of actions that doubles know to some 1e-16: rounding 1e-11 over the largest, and the step's square.
-TODA_GROWTH = 1e-6
 # numbers of a page, written with three or four digits
 THREE_DIGITS = 1e-3
 
@@ -790,6 +779,10 @@ SAME_TORUS = 1e-12
 
 # Coordinates of seeds at t = 0 of tori with some thousand harmonics, each coefficient rounded.
 AT_THE_START = 1e-12
+
+# Rates of growth along the torus of five angles near Fig. 9's trajectory, with 2500 and more harmonics: the fourth differs by 3.5e-2
+# from that of 6000, the residuals being 3e-5 and 1.5e-6.
+KEPT_RATES = 0.05
 
 # Squares of logarithms of multipliers next to 1, where two pairs nearly meet: rounding of the torus and of the monodromy matrix.
 BESIDE_MULTIPLIER = 1e-12

@@ -17,15 +17,17 @@ import numpy as np
 from symfpu.algebra.grading import Ints
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers, with_digits
+from symfpu.numbers.public import public
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 
-def actions(solution: QuasiPeriodic | RingTorus) -> dict[int, Any]:
+@public
+def actions(solution: QuasiPeriodic) -> dict[int, Any]:
     """The action of every angle, by seed: I_i = 1/2 sum nu_i (nu.omega) c_q[nu]^2.
 
-    solution : any torus or breather, of fixed ends or of a ring; on a ring the waves' sines b stand
-        for c. Dimensionless. For small amplitudes I_q = Omega_q A_q^2 / 2.
+    solution : any torus or breather, of fixed ends or of a ring; on a ring the coefficients of
+        its waves. Dimensionless. For small amplitudes I_q = Omega_q A_q^2 / 2. Standing waves of
+        a ring have twice that: two chains of half the length move.
 
     Doubles, or mpf that print the digits of the solution. The integral of P dQ along an angle,
     averaged over the others: exact on a torus, as close as the solution else. Ours. Raises
@@ -35,16 +37,15 @@ def actions(solution: QuasiPeriodic | RingTorus) -> dict[int, Any]:
     >>> round(actions(breather_at_amplitude(Chain(8, beta=1), 1, "0.4"))[1], 9)
     0.031268297
     """
-    if isinstance(solution, RingTorus):
-        return _by_seed(solution.seeds, _of_waves(solution))
     if not isinstance(solution, QuasiPeriodic):
         allowed = "a solution: a torus or a breather"
-        advice = "pass what solve_amplitudes, refine or travelling_torus gave"
+        advice = "pass what solve_amplitudes or refine gave"
         raise InputError("solution", type(solution).__name__, allowed, advice)
     with solution.numbers.context(solution.digits):
         omega = [solution.numbers.number(w) for w in solution.frequencies]
         squares = (solution.cosines**2).sum(axis=1)
         found = half_weighted(solution.harmonics, np.array(omega), squares)
+        found = 2 * found if solution.stands else found  # two chains of half the length
     return _by_seed(solution.seeds, with_digits(found, solution.digits))
 
 
@@ -52,22 +53,6 @@ def half_weighted(harmonics: Ints, omega: Numbers, squares: Numbers) -> Numbers:
     """1/2 sum of nu_i (nu.omega) times the squares (H,) of the harmonics (H, s); shape (s,)."""
     rates = harmonics @ omega
     return np.asarray(harmonics.T @ (rates * squares) / 2)
-
-
-def _of_waves(torus: RingTorus) -> Numbers:
-    """The same over the waves b sin(2 pi m j / N - nu.theta), those of one shape added first."""
-    N = torus.chain.N
-    sums: dict[tuple[int, ...], float] = {}
-    for nu, m, b in zip(
-        torus.harmonics.tolist(), torus.modes.tolist(), torus.sines.tolist(), strict=True
-    ):
-        direct = (m % N, *nu)
-        opposite = (-m % N, *(-n for n in nu))
-        key, sign = (direct, 1) if direct >= opposite else (opposite, -1)
-        sums[key] = sums.get(key, 0.0) + sign * b
-    table = np.array([key[1:] for key in sums], dtype=np.int64)
-    omega = np.array([float(w) for w in torus.frequencies])
-    return half_weighted(table, omega, np.array(list(sums.values())) ** 2)
 
 
 def _by_seed(seeds: tuple[int, ...], values: Numbers) -> dict[int, Any]:

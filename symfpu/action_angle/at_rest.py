@@ -15,14 +15,11 @@ pair q, N-q, and for nothing else; with alpha it is definite between two values 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
-import flint
 import numpy as np
 import symengine as se
 from numpy.typing import NDArray
@@ -34,13 +31,13 @@ from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import rational, seed_modes
 
 Floats = NDArray[np.float64]
-FIRST_BITS = 128
 TODA = Fraction(2, 3)  # beta / alpha^2
-PLACES = 10**12  # of the ends of the range
-EDGE = Fraction(1, 10**10)  # half width of the enclosure of an end of the range
+# of an eigenvalue in doubles, by the size of the matrix: more than eigvalsh loses
+ROUNDING = 16 * float(np.finfo(float).eps)
 
 
 def in_words(signature: tuple[int, int, int]) -> str:
@@ -57,14 +54,15 @@ def in_words(signature: tuple[int, int, int]) -> str:
     return "positive definite" if positive else "negative definite"
 
 
+@public
 @dataclass(frozen=True)
 class TwistAtRest(Tabled):
     """Lambda = d omega / d I of some modes as their amplitudes vanish; made by `twist_at_rest`.
 
     chain, seeds : the model and its modes. signature : how many eigenvalues are positive, negative,
-    zero: exact.
+    and zero or below rounding; exact where alpha = 0.
     definite_range : beta/alpha^2 between which Lambda of these modes is positive definite, whatever
-        the couplings of this chain; -inf or inf where it does not end; to 1e-10, proved.
+        the couplings of this chain; inf where it does not end; of eigenvalues in doubles.
     Dimensionless. Ours.
 
     >>> from symfpu import Chain, twist_at_rest
@@ -93,12 +91,8 @@ class TwistAtRest(Tabled):
     @property
     def matrix(self) -> Floats:
         """Lambda in doubles, (s, s)."""
-        linear = self.chain.frequencies()[np.array(self.seeds) - 1]
         alpha, beta = map(float, _couplings(self.chain))
-        weights = np.array(
-            [[float(_weight(self.chain.N, q, n)) for n in self.seeds] for q in self.seeds]
-        )
-        G = weights * np.outer(linear, linear)
+        G = _scaled(self.chain.N, self.seeds)
         own = alpha**2 * (np.eye(len(self.seeds)) - G) + 1.5 * beta * G
         return np.asarray(own / self.chain.N)
 
@@ -137,17 +131,16 @@ class TwistAtRest(Tabled):
         return Table(columns, known)
 
 
+@public
 def twist_at_rest(chain: Chain, seeds: Sequence[int] | None = None) -> TwistAtRest:
-    """Lambda = d omega / d I at rest, in closed form, with its exact signature.
+    """Lambda = d omega / d I at rest, in closed form, with its signature.
 
     chain : of any potential, with fixed ends; c_3 and c_4 count as alpha and beta. seeds : modes;
         default all N-1. Dimensionless.
 
-    Signs are proved: pivots in balls; where one holds zero, the coefficients of the characteristic
-    polynomial, until they are below what an algebraic integer of their field can be. Returns
-    TwistAtRest.
-    Ours; fourth order of Birkhoff's normal form. Raises InputError, also where both couplings are
-    zero.
+    The signature of the beta chain is exact, that of others is that of eigenvalues in doubles: one
+    that rounding does not tell from zero counts as zero. Returns TwistAtRest. Ours; fourth order
+    of Birkhoff's normal form. Raises InputError, also where both couplings are zero.
 
     >>> from symfpu import Chain
     >>> twist_at_rest(Chain(8, beta=1)).signature
@@ -162,10 +155,10 @@ def twist_at_rest(chain: Chain, seeds: Sequence[int] | None = None) -> TwistAtRe
         allowed = "c_3 or c_4 other than zero"
         raise InputError("chain", chain, allowed, "see birkhoff_form for higher orders")
     if alpha:
-        tau = Fraction(3, 2) * (beta / alpha**2 - TODA)
-        found = _signature(chain.N, modes, Fraction(1), tau)
+        found = _signature(chain.N, modes, Fraction(3, 2) * (beta / alpha**2 - TODA))
     else:
-        found = _signature(chain.N, modes, Fraction(0), beta)
+        inertia = _inertia(chain.N, modes)
+        found = (*(inertia if beta > 0 else inertia[::-1]), 0)
     return TwistAtRest(chain, modes, found, definite_range(chain.N, modes))
 
 
@@ -182,114 +175,32 @@ def _weight(N: int, q: int, n: int) -> Fraction:
 
 
 def definite_range(N: int, seeds: Sequence[int]) -> tuple[float, float]:
-    """beta/alpha^2 between which 1 + tau G is positive definite; ends to 1e-10, proved."""
+    """beta/alpha^2 between which 1 + tau G is positive definite: 2/3 - 2/(3 g), g its extreme
+    eigenvalues in doubles; no upper end where G has no negative one.
+    """
+    values = np.linalg.eigvalsh(_scaled(N, seeds))
+    low = float(TODA) * (1 - 1 / values[-1])
+    high = float(TODA) * (1 - 1 / values[0]) if _inertia(N, seeds)[1] else np.inf
+    return float(low), float(high)
+
+
+def _inertia(N: int, seeds: Sequence[int]) -> tuple[int, int]:
+    """How many eigenvalues of G are positive and negative: the theorem above."""
+    pairs = sum(N - q in seeds for q in seeds if 2 * q < N)
+    return pairs + 1, len(seeds) - pairs - 1
+
+
+def _scaled(N: int, seeds: Sequence[int]) -> Floats:
+    """G in doubles."""
     linear = 2 * np.sin(np.pi * np.array(seeds) / (2 * N))
     weights = np.array([[float(_weight(N, q, n)) for n in seeds] for q in seeds])
-    values = np.linalg.eigvalsh(weights * np.outer(linear, linear))
-    low = _end(N, seeds, float(values[-1]))
-    high = (
-        _end(N, seeds, float(values[0])) if len(seeds) > 1 and values[0] < 0 else math.inf
-    )
-    return low, high
+    return np.asarray(weights * np.outer(linear, linear))
 
 
-def _end(N: int, seeds: Sequence[int], eigenvalue: float) -> float:
-    """2/3 - 2 / (3 g) of an extreme eigenvalue g: definite inside, not definite outside."""
-    guess = Fraction(round((TODA - TODA / Fraction(eigenvalue)) * PLACES), PLACES)
-    inward = EDGE if eigenvalue > 0 else -EDGE
-    for end, inside in ((guess + inward, True), (guess - inward, False)):
-        tau = Fraction(3, 2) * (end - TODA)
-        positive, *_ = _signature(N, seeds, Fraction(1), tau)
-        if (positive == len(seeds)) != inside:
-            raise ArithmeticError(f"the end {float(guess)} of modes {seeds} is not proved")
-    return float(guess)
-
-
-def _signature(
-    N: int, seeds: Sequence[int], constant: Fraction, tau: Fraction
-) -> tuple[int, int, int]:
-    """Of constant + tau G: how many eigenvalues are positive, negative, zero."""
-    scale = 4 * math.lcm(constant.denominator, tau.denominator)
-    constant, tau = constant * scale, tau * scale
-    with flint.ctx.workprec(FIRST_BITS + 8 * len(seeds)):
-        pivots = _pivots(_entries(N, seeds, constant, tau))
-    if pivots is not None:
-        positive = sum(pivots)
-        return positive, len(seeds) - positive, 0
-    # all roots of the characteristic polynomial are real: Descartes' rule counts them
-    signs = _signs(N, seeds, constant, tau)
-    zero = next(k for k, sign in enumerate(signs) if sign)
-    present = [sign for sign in signs if sign]
-    positive = sum(a != b for a, b in pairwise(present))
-    return positive, len(seeds) - positive - zero, zero
-
-
-def _pivots(rows: list[list[Any]]) -> list[bool] | None:
-    """Whether each pivot of a symmetric elimination is positive: Sylvester's law of inertia.
-
-    None where a ball does not tell the sign of a pivot.
-    """
-    left, found = rows, []
-    while left:
-        place = max(range(len(left)), key=lambda k: abs(float(left[k][k])))
-        pivot = left[place][place]
-        if pivot.contains(0):
-            return None
-        found.append(bool(pivot > 0))
-        line = left[place]
-        others = [k for k in range(len(left)) if k != place]
-        factors = {k: left[k][place] / pivot for k in others}
-        left = [[left[i][j] - factors[i] * line[j] for j in others] for i in others]
-    return found
-
-
-def _signs(N: int, seeds: Sequence[int], constant: Fraction, tau: Fraction) -> list[int]:
-    """Signs of the coefficients of the characteristic polynomial, the lowest first.
-
-    Entries are algebraic integers. All conjugates of a coefficient of degree k in the entries are
-    at most binomial(s, k) R^k, R a bound of the row sums with |Omega| <= 2: if it is not zero, it
-    is not smaller than that to the power 1 - d, d the degree of their field.
-    """
-    s, field = len(seeds), _totient(4 * N)
-    bound = math.ceil(abs(constant) + 4 * s * abs(tau)) + 1
-    bits = FIRST_BITS
-    while True:
-        with flint.ctx.workprec(bits):
-            matrix = flint.arb_mat(_entries(N, seeds, constant, tau))
-            coefficients = list(matrix.charpoly().coeffs())
-            signs = []
-            for k, c in enumerate(coefficients):
-                power = s - k
-                largest = math.comb(s, power) * bound**power
-                signs.append(_sign(c, (field - 1) * largest.bit_length()))
-        if None not in signs:
-            return [sign for sign in signs if sign is not None]
-        bits *= 2
-
-
-def _sign(ball: Any, gap: int) -> int | None:
-    """Of a number that is zero or at least 2^-gap; None where the ball does not tell."""
-    if not ball.contains(0):
-        return 1 if ball > 0 else -1
-    return 0 if abs(ball) < flint.arb(2) ** -gap else None
-
-
-def _entries(
-    N: int, seeds: Sequence[int], constant: Fraction, tau: Fraction
-) -> list[list[Any]]:
-    """constant + tau G in balls."""
-    linear = {q: 2 * flint.arb.sin_pi_fmpq(flint.fmpq(q, 2 * N)) for q in seeds}
-    rows: list[list[Any]] = []
-    for q in seeds:
-        row = [linear[q] * linear[n] * _fmpq(tau * _weight(N, q, n)) for n in seeds]
-        row[len(rows)] += _fmpq(constant)
-        rows.append(row)
-    return rows
-
-
-def _fmpq(value: Fraction) -> Any:
-    return flint.arb(flint.fmpq(value.numerator, value.denominator))
-
-
-def _totient(n: int) -> int:
-    return sum(math.gcd(k, n) == 1 for k in range(1, n + 1))
+def _signature(N: int, seeds: Sequence[int], tau: Fraction) -> tuple[int, int, int]:
+    """Of 1 + tau G: how many eigenvalues are positive, negative, and zero or below rounding."""
+    scaled = float(tau) * np.linalg.eigvalsh(_scaled(N, seeds))
+    values = 1 + scaled
+    rounding = ROUNDING * len(seeds) * (1 + float(np.abs(scaled).max()))
+    positive, negative = int(np.sum(values > rounding)), int(np.sum(values < -rounding))
+    return positive, negative, len(seeds) - positive - negative

@@ -1,7 +1,11 @@
 """Birkhoff's normal form restricted to the modes of a torus: H as a polynomial in the actions.
 
 The series of a torus with linear frequencies in all divisors gives frequencies and actions as
-power series in the squared amplitudes. Inverted, omega(I). As omega = dH/dI, and the part
+power series in the squared amplitudes,
+
+    kappa^2 I_i = sum over q and nu of 2 nu_i (nu.omega) / Omega_q^2 y^|nu| (sum u_q[nu] y^e)^2,
+
+y and kappa as in symfpu.series.expanded. Inverted, omega(I). As omega = dH/dI, and the part
 omega_(n-1) is homogeneous of degree n - 1 in the actions, Euler's theorem gives the part of H:
 
     H_n(I) = sum_i I_i omega_(i, n-1)(I) / n.
@@ -13,6 +17,8 @@ and the rational functions of the Omega_q of all modes, taken as independent sym
 
 from __future__ import annotations
 
+import bisect
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -20,7 +26,6 @@ from typing import Any
 import mpmath
 import symengine as se
 
-from symfpu.action_angle.expanded import ExpandedSeries
 from symfpu.algebra.formulas import Multiplier
 from symfpu.algebra.quotients import monomials_of, quotient_field
 from symfpu.algebra.real_cyclotomic import RealCyclotomic, double_cosines
@@ -34,16 +39,26 @@ from symfpu.frames.table import Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import MULTIPRECISION, with_digits
 from symfpu.numbers.counted import counted
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer
+from symfpu.series.arguments import digits_of
+from symfpu.series.expanded import ExpandedSeries, driven_modes, monomial_of
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 
+# of divisors of a universal series: fractions of 10^4 take seconds, of 3 10^5 minutes
+MOST_PRODUCTS = 10**5
+MOST_WORK = 10**8  # operations with numbers of one digit or so: five minutes, about
+# for the same: of a number of the field of degree N; of a fraction, or of mpf beside their digits
+OPERATIONS, DIGITS_AN_OPERATION = 8, 50
+INVERSION = 1000  # of (N times degree)^3, as a part of it
 SPARE_DIGITS = 5  # of the working precision, to which a divisor may be zero
 WAY_OUT = (
     "the normal form has no finite coefficient here: take other seeds or a lower degree"
 )
 
 
+@public
 @dataclass(frozen=True)
 class BirkhoffForm(Tabled):
     """H = sum over e of h_e I^e, the normal form of a chain on the torus of its seeds.
@@ -152,6 +167,7 @@ def _product(values: Sequence[Any], exponents: Sequence[int]) -> Any:
     return mpmath.fprod(x**n for x, n in zip(values, exponents, strict=True))
 
 
+@public
 def birkhoff_form(
     chain: Chain,
     seeds: Sequence[int | str],
@@ -168,7 +184,7 @@ def birkhoff_form(
     over : of exact coefficients. "chain" for numbers of this chain, sums of cosines of k pi / 2N;
         "symbols" for rational functions of Omega_q of all modes that are driven, as they come from
         the recursion: degree 2 is short, degree 3 of one seed. Default: the chain's where N is a
-        number.
+        number. A form that would take longer than some minutes is refused before it begins.
     digits : for mpf at the chain's frequencies instead; None for exact coefficients.
     progress : called as (label, fraction done).
 
@@ -187,8 +203,9 @@ def birkhoff_form(
     require_chain(chain)
     top = integer(degree, "degree", 1)
     if digits is not None:
-        integer(digits, "digits", 1)
+        digits_of(digits)
     field = _field(chain, over, digits)
+    _require_little_work(chain, len(seeds), top, field, digits)
     tell = progress or unheard
     tell("series", 0.0)
     series = lindstedt(chain, seeds, order=_series_order(chain, top), ring="nested")
@@ -215,6 +232,41 @@ def _field(chain: Chain, over: str | None, digits: int | None) -> str:
     return found
 
 
+def _require_little_work(
+    chain: Chain, seeds: int, degree: int, field: str, digits: int | None
+) -> None:
+    """InputError for a form that would take longer than MOST_WORK, before anything begins."""
+
+    def work(d: int) -> int:
+        return _work(chain, seeds, d, field, digits)
+
+    if work(degree) <= MOST_WORK:
+        return
+    allowed = (
+        f"a form of at most {MOST_WORK:.0e} operations ({work(degree):.1e} are needed)"
+    )
+    fitting = bisect.bisect_right(range(degree), MOST_WORK, lo=1, key=work) - 1
+    lower = f"take degree {fitting} or less" if fitting else "take a shorter chain"
+    raise InputError("degree", degree, allowed, f"{lower}, or fewer seeds")
+
+
+def _work(chain: Chain, seeds: int, degree: int, field: str, digits: int | None) -> int:
+    """About how many operations a form takes, as measured for one to four seeds.
+
+    A product of two terms of the series, expanded in the actions, has 4s exponents of amplitudes
+    and 2s of actions, of a weight of at most degree - 1 in all. Numbers grow with the degree.
+    Those of the chain's field have N parts, and to invert one takes elimination.
+    """
+    top = max(1, degree - 1)
+    products = seeds * math.comb(top + 6 * seeds, 6 * seeds) * top**2
+    if digits is not None:
+        return products * (OPERATIONS + digits // DIGITS_AN_OPERATION)
+    if field != "chain":
+        return products * OPERATIONS
+    N = int(chain.N)
+    return products * N + (N * top) ** 3 // INVERSION
+
+
 def _series_order(chain: Chain, degree: int) -> int:
     """Of the frequencies: degree - 1 in the actions."""
     return 2 * (degree - 1) // chain.degree_step
@@ -226,35 +278,42 @@ def normal_form(
     """kappa^2 H and omega as power series in J = kappa^2 I, over the field of the series."""
     chain, one = expanded.series.chain, expanded.one
     top = max(1, degree - 1)
-    rest = [one * 0 for _ in expanded.linear]
-    y = variables(rest, top, one)
+    y = variables([one * 0 for _ in expanded.linear], top, one)
     omega = [x * 0 + w for x, w in zip(y, expanded.linear, strict=True)]
-    # the recursion's divisors hold the frequencies: each pass is right to one degree more
-    for known in range(1, degree):
-        tell("frequencies", known / degree)
-        shorter = [w.cut(known) for w in omega]
-        order = _series_order(chain, known + 1)
-        omega = _roots(expanded, shorter, variables(rest, known, one), order)
+    if degree > 1:
+        ratios = expanded.frequency_ratios(top, tell)
+        omega = [ratio * w for ratio, w in zip(ratios, expanded.linear, strict=True)]
     coordinates = max(0, 2 * (degree - 2) // chain.degree_step - 1)
-    J = expanded.scaled_actions(omega, y, coordinates)
+    J = _scaled_actions(expanded, omega, y, coordinates)
     tell("actions", (degree - 1) / degree)
     of_actions = inverted(J)
     rates = [w.composed(of_actions) for w in omega]
     return _by_euler(rates, degree, one), rates
 
 
-def _roots(
-    expanded: ExpandedSeries, omega: list[Truncated], y: list[Truncated], order: int
+def _scaled_actions(
+    expanded: ExpandedSeries,
+    omega: Sequence[Truncated],
+    y: Sequence[Truncated],
+    order: int,
 ) -> list[Truncated]:
-    """omega_i = Omega_i sqrt(1 + sum W_i y^e), with the divisors of frequencies before."""
-    terms = expanded.squared_frequencies(omega, y, order)
-    found = []
-    for i, linear in enumerate(expanded.linear):
-        total = y[0] * 0 + linear * linear
-        for row in terms:
-            total = total + row[i]
-        relative = total * (1 / (linear * linear))
-        found.append(relative.root() * linear)
+    """kappa^2 I_i of the coordinates cut at an order."""
+    found = [y[0] * 0 for _ in expanded.linear]
+    inverses: dict[int, Any] = {}
+    for nu, columns in expanded.coordinates(omega, y, order).items():
+        size = [abs(n) for n in nu]
+        top = y[0].top - sum(size)  # the degrees that y^|nu| leaves
+        rate = sum((w.cut(top) * n for w, n in zip(omega, nu, strict=True)), start=0)
+        total: Any = 0
+        for q, whole in columns.items():
+            if q not in inverses:
+                inverses[q] = 1 / expanded.squares[q]
+            column = whole.cut(top)
+            total = column * column * inverses[q] + total
+        weight = (total * rate).cut(y[0].top) * monomial_of(y, size)
+        for i, n in enumerate(nu):
+            if n:
+                found[i] = found[i] + weight * (2 * n)
     return found
 
 
@@ -272,17 +331,9 @@ def _by_euler(rates: Sequence[Truncated], degree: int, one: Any) -> Truncated:
     return Truncated(kept, size)
 
 
-def _driven(series: LindstedtSeries) -> list[int]:
-    """All modes that the coefficients speak of, the seeds first."""
-    program = series.node_tables()[0].program
-    named = {s.mode for s in program.symbols if isinstance(s, Multiplier)}
-    others = sorted(named - set(series.seeds), key=lambda q: (q < 0, q))
-    return [*series.seeds, *others]
-
-
 def symbolic_series(series: LindstedtSeries) -> tuple[ExpandedSeries, list[int]]:
     """A universal series over the rational functions of Omega_q, and the q of its variables."""
-    modes = _driven(series)
+    modes = driven_modes(series)
     field = quotient_field([f"x{i}" for i in range(len(modes))])
     linear = dict(zip(modes, field, strict=True))
     squares = {q: x * x for q, x in linear.items()}
@@ -305,6 +356,7 @@ class _Squares(dict[int, Any]):
 def _in_symbols(
     series: LindstedtSeries, degree: int, tell: Progress
 ) -> dict[Exponents, Any]:
+    _check_divisors(series, degree)
     expanded, modes = symbolic_series(series)
     H, _ = normal_form(expanded, degree, tell)
     symbols = list(map(linear_symbol, modes))
@@ -313,6 +365,23 @@ def _in_symbols(
         top, bottom = (_expression(part, symbols) for part in (c.top, c.bottom))
         found[e] = kappa ** (sum(e) - 1) * top / bottom
     return found
+
+
+def _check_divisors(series: LindstedtSeries, degree: int) -> None:
+    """InputError for rational functions with more products of divisors than can be expanded.
+
+    A coefficient has a factor 1/divisor for each order that it passes, degree - 1 of them apart
+    from powers.
+    """
+    program = series.node_tables()[0].program
+    divisors = sum(isinstance(symbol, Multiplier) for symbol in program.symbols)
+    products = divisors ** (degree - 1)
+    if products > MOST_PRODUCTS:
+        allowed = (
+            f"at most {MOST_PRODUCTS:.0e} products of divisors ({products:.1e} are there)"
+        )
+        advice = "take a lower degree, or fewer seeds; with a number for N, over='chain'"
+        raise InputError("degree", degree, allowed, advice)
 
 
 def _kappa_square(chain: Chain) -> Any:
@@ -325,9 +394,12 @@ def _kappa_square(chain: Chain) -> Any:
 def chain_series(series: LindstedtSeries) -> ExpandedSeries:
     """A universal series over the field of 2 cos(pi / 2N), with Omega_q = 2 cos((N-q) pi / 2N)."""
     N = series.chain.N
-    cosines = double_cosines(4 * N)
+    cosines = double_cosines(4 * N, N + 1)
     linear = {q: cosines[N - q] for q in series.chain.mode_numbers}
-    squares = {q: x * x for q, x in linear.items()}
+    # Omega_q^2 = 2 - 2 cos(2 q pi / 2N)
+    squares = {
+        q: 2 - cosines[2 * q] if 2 * q <= N else 2 + cosines[2 * (N - q)] for q in linear
+    }
     own = [linear[q] for q in series.seeds]
     return _GuardedSeries(series, own, squares, cosines[0] / 2)
 

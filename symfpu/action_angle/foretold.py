@@ -43,13 +43,13 @@ from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
-from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.torus import Solution, require_refined, second_order
+from symfpu.normal.torus import require_refined, second_order
 from symfpu.notebook import Shown
-from symfpu.numbers.typed import double, integer
+from symfpu.numbers.arithmetic import DOUBLES
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import double, random_seed
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
-from symfpu.tori.ring_torus import RingTorus
 
 Floats = NDArray[np.float64]
 REFINED = 1e-8  # residual of a torus, relative, above which it is refused
@@ -58,6 +58,7 @@ EXACT, AT_REST = "normal modes", "modes at rest"
 LONGEST = 1e15  # time: angles are known to 0.1 there
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class ForetoldIndices(Shown, Gridded):
     """log10 GALI_k of a torus in closed form. Made by `foretold_indices`; ours, dimensionless.
@@ -75,7 +76,7 @@ class ForetoldIndices(Shown, Gridded):
     ..., on the torus -1, -2, -3, settled from t = ..., by normal modes)
     """
 
-    torus: Solution
+    torus: QuasiPeriodic
     times: Floats
     log10_gali: Floats
     growth: Floats
@@ -212,8 +213,9 @@ def settled_text(time: float, last: float) -> str:
     return f"settled from t = {time:.3g}"
 
 
+@public
 def foretold_indices(
-    solution: Solution,
+    solution: QuasiPeriodic,
     T: float | ArrayLike,
     *,
     vectors: int | None = None,
@@ -229,7 +231,7 @@ def foretold_indices(
     T : the last time, up to 1e15, or the times (S,), ascending and positive, 64 at least.
     vectors, seed, samples : as `alignment_indices` takes them; the frame is the same.
     start : the time on the solution at which the frame is drawn: `solution.state(start)`, on a
-        ring `mode_coordinates(start)` and `mode_momenta(start)`.
+        ring the same, complex.
     normal : what `normal_modes(solution)` gave, all modes, elliptic: then the indices are exact.
         Without it the normal directions turn as modes at rest do, which changes indices by a few
         tenths of a decade at most for weak coupling, and neither slopes nor settling times.
@@ -245,27 +247,27 @@ def foretold_indices(
     {2: -1, 3: -2, 4: -3, 5: -4, 6: -6}
     """
     torus = _checked(solution)
-    count, drawn = frame_size(torus.chain.N - 1, vectors), integer(seed, "seed", 0)
+    count, drawn = frame_size(torus.chain.N - 1, vectors), random_seed(seed)
     times = _times(T, samples)
     flow = flow_of(torus, normal, double(start, "start"))
     return indices_by(flow, solution, times, count, drawn)
 
 
 def flow_of(
-    torus: Solution, normal: NormalModes | None = None, start: float = 0.0
+    torus: QuasiPeriodic, normal: NormalModes | None = None, start: float = 0.0
 ) -> LinearFlow:
     """The linearised flow about a refined torus from its state at a time on."""
     directions = _at_rest(torus) if normal is None else _given(torus, normal)
     phases = np.array([float(torus.phases[q]) for q in torus.seeds])
     omega = np.array([float(w) for w in torus.frequencies])
     begun = phases + omega * start
-    doubles = _in_doubles(torus)
+    doubles = torus.in_doubles()
     changes = changes_by_action(doubles)
     return LinearFlow(doubles, changes, begun, directions, exact=normal is not None)
 
 
 def indices_by(
-    flow: LinearFlow, solution: Solution, times: Floats, vectors: int, seed: int
+    flow: LinearFlow, solution: QuasiPeriodic, times: Floats, vectors: int, seed: int
 ) -> ForetoldIndices:
     """Indices of one frame; all frames of a torus need one flow."""
     s = len(solution.seeds)
@@ -317,22 +319,11 @@ def _volumes_at(flow: LinearFlow, start: Floats, times: Floats) -> tuple[Floats,
     return np.cumsum(np.log10(heights), axis=1)[:, 1:], np.log(lengths[:, 0])
 
 
-def _checked(solution: object) -> Solution:
-    """The solution in doubles; InputError for what is no refined torus, and for other waves."""
-    if isinstance(solution, RingTorus):
-        if is_standing(solution):
-            folded(solution)
-        torus: Solution = solution
-    else:
-        require_solution(solution, "solution")
-        assert isinstance(solution, QuasiPeriodic)
-        torus = solution
+def _checked(solution: object) -> QuasiPeriodic:
+    """The solution in doubles; InputError for what is no refined torus."""
+    torus = require_solution(solution, "solution")
     require_refined(torus, REFINED)
-    return _in_doubles(torus)
-
-
-def _in_doubles(torus: Solution) -> Solution:
-    return torus if isinstance(torus, RingTorus) else torus.in_doubles()
+    return torus.in_doubles()
 
 
 def _times(T: object, samples: int) -> Floats:
@@ -341,8 +332,8 @@ def _times(T: object, samples: int) -> Floats:
         if last > LONGEST:
             raise InputError("T", T, f"up to {LONGEST:.0e}", "take a shorter time")
         return np.asarray(np.geomspace(1.0, last, sample_count(samples)))
-    times = np.asarray(T, dtype=np.float64)
-    ascending = times.ndim == 1 and bool(np.all(np.diff(times) > 0))
+    times = DOUBLES.array(T)
+    ascending = times.ndim == 1 and len(times) > 0 and bool(np.all(np.diff(times) > 0))
     if not ascending or not 0 < times[0] <= times[-1] <= LONGEST:
         allowed = f"a time, or ascending times between 0 and {LONGEST:.0e}"
         raise InputError(
@@ -352,8 +343,8 @@ def _times(T: object, samples: int) -> Floats:
     return times
 
 
-def _at_rest(torus: Solution) -> list[NormalDirection]:
-    if isinstance(torus, RingTorus) and is_standing(torus):
+def _at_rest(torus: QuasiPeriodic) -> list[NormalDirection]:
+    if torus.stands:
         allowed = "normal modes, of standing waves of a ring"
         raise InputError("normal", None, allowed, "pass normal_modes(solution)")
     n, s = torus.chain.N - 1, len(torus.seeds)
@@ -365,7 +356,7 @@ def _at_rest(torus: Solution) -> list[NormalDirection]:
     ]
 
 
-def _given(torus: Solution, normal: object) -> list[NormalDirection]:
+def _given(torus: QuasiPeriodic, normal: object) -> list[NormalDirection]:
     """The directions of normal modes that are those of this torus; InputError for others."""
     if not isinstance(normal, NormalModes):
         advice = "pass normal_modes(solution)"

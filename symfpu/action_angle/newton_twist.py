@@ -16,18 +16,15 @@ import numpy as np
 
 from symfpu.action_angle.actions import actions, half_weighted
 from symfpu.errors import SymfpuError
-from symfpu.normal.linearised_standing import folded, is_standing
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.refinement.conditions import Amplitude, seed_amplitudes
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.harmonics import unit_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.newton import responses
-from symfpu.refinement.waves import WaveEquation
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
-from symfpu.tori.travelling import wave_coefficients
+from symfpu.tori.unfolding import folded
 
 
 class NoTwist(SymfpuError):
@@ -45,17 +42,17 @@ class NoTwist(SymfpuError):
         super().__init__(f"no twist: {reason}")
 
 
-def changes_by_newton(torus: QuasiPeriodic | RingTorus) -> tuple[Floats, Floats]:
+def changes_by_newton(torus: QuasiPeriodic) -> tuple[Floats, Floats]:
     """Derivatives of the frequencies and of the actions by ln A_j, (s, s), j last.
 
     torus : that solves the equations of motion, in doubles; of a ring, travelling waves or what
-        `unfold` gave. Raises NoTwist; InputError for other waves.
+        `unfold` gave. Raises NoTwist.
     """
     found = _changes(torus)
     return found.by_shift.T, found.by_action.T
 
 
-def action_turn(torus: QuasiPeriodic | RingTorus) -> float:
+def action_turn(torus: QuasiPeriodic) -> float:
     """det of d ln I_i / d ln A_j: it passes zero where the actions turn on a family; NoTwist."""
     by_action = _changes(torus).by_action
     by_logarithm = by_action / np.array(list(actions(torus).values()))
@@ -77,7 +74,7 @@ class ActionChanges:
     twist: Floats
 
 
-def changes_by_action(torus: QuasiPeriodic | RingTorus) -> ActionChanges:
+def changes_by_action(torus: QuasiPeriodic) -> ActionChanges:
     """The same by the actions, with what the coefficients do. Raises NoTwist."""
     found = _changes(torus)
     try:
@@ -95,18 +92,18 @@ def changes_by_action(torus: QuasiPeriodic | RingTorus) -> ActionChanges:
 class _Changes(NamedTuple):
     """By ln A_j, j first."""
 
-    equation: TorusEquation
+    equation: InvarianceEquation
     cosines: Floats
     by_cosine: Floats
     by_shift: Floats
     by_action: Floats
 
 
-def _changes(torus: QuasiPeriodic | RingTorus) -> _Changes:
-    if isinstance(torus, RingTorus) and is_standing(torus):
+def _changes(torus: QuasiPeriodic) -> _Changes:
+    if torus.stands:
         half = _changes(folded(torus))
         return half._replace(by_action=2 * half.by_action)
-    equation, table = _equation_of(torus)
+    equation, table = equation_of(torus)
     cosines = table.astype(np.longdouble)
     shifts = shifts_of(torus)
     amplitudes = seed_amplitudes(equation, cosines)
@@ -128,26 +125,17 @@ def _changes(torus: QuasiPeriodic | RingTorus) -> _Changes:
     return _Changes(equation, known, by_cosine, by_shift, np.array(by_action))
 
 
-def _equation_of(torus: QuasiPeriodic | RingTorus) -> tuple[TorusEquation, Numbers]:
-    """The equation of fixed ends or of travelling waves, and the coefficients in it."""
-    if not isinstance(torus, RingTorus):
-        return equation_of(torus)
-    harmonics, table = wave_coefficients(torus)
-    equation = WaveEquation(torus.chain, torus.seeds, harmonics)
-    return equation, np.where(equation.mask, table, 0)
-
-
 def equation_of(torus: QuasiPeriodic) -> tuple[InvarianceEquation, Numbers]:
     """The equation on the harmonics of a torus, the seeds' own among them, and its cosines.
 
-    Cosines (H, N-1) as the torus has them, 0 where the symmetry forbids one.
+    Cosines (H, C) as the torus has them, 0 where the symmetry forbids one.
     """
     signs = [_sign(nu) for nu in torus.harmonics.tolist()]
     harmonics = torus.harmonics * np.array(signs)[:, None]
     rows = {
         tuple(nu): row for nu, row in zip(harmonics.tolist(), torus.cosines, strict=True)
     }
-    none = np.zeros(torus.chain.N - 1)
+    none = np.zeros(torus.cosines.shape[1])
     for unit in unit_harmonics(len(torus.seeds)):
         rows.setdefault(unit, none)
     listed = sorted(rows)

@@ -1,14 +1,13 @@
 """How frequencies and actions of a torus change with its amplitudes, to all digits of the torus.
 
 The equations are those of `newton_twist`: Newton's matrix J and a unit change of ln A_j. They are
-linear: a sweep takes J (dc, domega) in fixed point, by Kronecker products, and solves for what is
-left of it in doubles. It gains as many digits as that solution has.
+linear, and solved by iterative refinement: J (dc, domega) is taken in integers, its products by
+Kronecker substitution; the Jacobian is J in doubles.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
 
 import mpmath
 import numpy as np
@@ -16,35 +15,22 @@ from numpy.typing import NDArray
 
 from symfpu.action_angle.actions import half_weighted
 from symfpu.action_angle.newton_twist import NoTwist, equation_of
+from symfpu.files.progress import unheard
 from symfpu.normal.kronecker import KroneckerFlow
 from symfpu.numbers.arithmetic import (
     MULTIPRECISION,
     Numbers,
-    doubles_as_integers,
     from_integers,
     mpf,
 )
 from symfpu.refinement.conditions import Amplitude, seed_amplitudes
-from symfpu.refinement.digits import (
-    ACCURACY,
-    CARRIED_DIGITS,
-    DOUBLE_BITS,
-    ROUNDING_BITS,
-    STALL_SWEEPS,
-    SWEEPS,
-)
-from symfpu.refinement.equation import Floats
+from symfpu.refinement.digits import ACCURACY, CARRIED_DIGITS
 from symfpu.refinement.guesses import shifts_of
+from symfpu.refinement.iterative_refinement import Failure, Problem, converge
 from symfpu.refinement.kronecker import Integers
+from symfpu.refinement.lattice import Floats
 from symfpu.refinement.newton import Correction
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-
-
-class Tangent(NamedTuple):
-    """A change of the coefficients (H, N-1) and of the frequencies (s,) in fixed point."""
-
-    cosines: Integers
-    shifts: Integers
 
 
 def changes_in_digits(torus: QuasiPeriodic) -> tuple[Numbers, Numbers]:
@@ -77,7 +63,7 @@ class Tangents:
         self.c: Integers = each_fixed(self.known)
         self.rates: Integers = self.flow.rates[: len(self.harmonics)]
         squares = (self.rates**2) >> self.bits
-        self.divisors: Integers = squares[:, None] - self.flow.squares
+        self.divisors: Integers = squares[:, None] - self.flow.squares(self.harmonics)
         self.correction = self._correction()
 
     def _correction(self) -> Correction:
@@ -93,11 +79,15 @@ class Tangents:
 
     def by_amplitude(self, place: int) -> tuple[Numbers, Numbers]:
         """Derivatives of the frequencies and of the actions by ln A of one seed, (s,)."""
-        found = self._converged(self._unit(place))
+        problem = TwistProblem(self, place)
+        try:
+            converge(problem, int(mpmath.mp.dps), unheard)
+        except Failure as failure:
+            raise NoTwist(f"{failure}: take twist(torus.in_doubles())") from failure
         with mpmath.workprec(self.bits):
             exponent = np.asarray(-self.bits)
-            by_cosine = from_integers(found.cosines, exponent)
-            by_shift = from_integers(found.shifts, exponent)
+            by_cosine = from_integers(problem.coefficients, exponent)
+            by_shift = from_integers(problem.frequencies, exponent)
             return by_shift, self._by_action(by_cosine, by_shift)
 
     def _by_action(self, by_cosine: Numbers, by_shift: Numbers) -> Numbers:
@@ -107,37 +97,11 @@ class Tangents:
         moved = half_weighted(self.harmonics, omega, mixed)
         return np.asarray(moved + half_weighted(self.harmonics, by_shift, squares))
 
-    def _unit(self, place: int) -> Tangent:
-        """ln A of one seed changes by one, nothing else: where the sweeps begin."""
-        cosines = np.zeros(self.mask.shape, dtype=object)
-        at = self.equation.seed_rows[place], self.equation.seed_columns[place]
-        cosines[at] = self.c[at]
-        return Tangent(cosines, np.zeros(len(self.torus.seeds), dtype=object))
-
-    def _converged(self, tangent: Tangent) -> Tangent:
-        """With sweeps until what is left of J is rounding; NoTwist where they gain nothing."""
-        least, stalled = math.inf, 0
-        for _ in range(SWEEPS):
-            image = self._image(tangent)
-            bits = max(abs(int(x)).bit_length() for x in image.flat)
-            if bits <= ROUNDING_BITS:
-                return tangent
-            stalled = 0 if bits < least else stalled + 1
-            if stalled >= STALL_SWEEPS:
-                break
-            least = min(least, bits)
-            tangent = self._corrected(tangent, image, bits)
-        gained = (self.bits - least) * math.log10(2)
-        reason = f"the sweeps in fixed point leave 1e-{gained:.0f} of Newton's equations"
-        raise NoTwist(f"{reason}: take twist(torus.in_doubles())")
-
-    def _image(self, tangent: Tangent) -> Integers:
-        """J of a change, where the amplitudes change as they should; (H, N-1)."""
-        turned = (
-            self.rates * (self.harmonics.astype(object) @ tangent.shifts)
-        ) >> self.bits
-        moved = self.divisors * tangent.cosines + 2 * turned[:, None] * self.c
-        force = self._force_change(tangent.cosines)
+    def image(self, cosines: Integers, shifts: Integers) -> Integers:
+        """J of a change of coefficients (H, C) and frequencies (s,); (H, C)."""
+        along = (self.rates * (self.harmonics.astype(object) @ shifts)) >> self.bits
+        moved = self.divisors * cosines + 2 * along[:, None] * self.c
+        force = self._force_change(cosines)
         return np.where(self.mask, (moved >> self.bits) - force, 0)
 
     def _force_change(self, cosines: Integers) -> Integers:
@@ -151,19 +115,31 @@ class Tangents:
         found = self.flow.coupling(np.arange(len(p)), p)[: len(cosines)]
         return np.where(still, found >> 1, found)
 
-    def _corrected(self, tangent: Tangent, image: Integers, bits: int) -> Tangent:
-        by_cosine, by_shift = self._change(image, bits)
-        equation = self.equation
-        by_cosine[equation.seed_rows, equation.seed_columns] = 0
-        cosines = tangent.cosines + doubles_as_integers(by_cosine, bits)
-        return Tangent(cosines, tangent.shifts + doubles_as_integers(by_shift, bits))
 
-    def _change(self, image: Integers, bits: int) -> tuple[Floats, Any]:
-        """What takes an image away, times 2^-bits."""
-        dropped, kept = max(bits - DOUBLE_BITS, 0), min(bits, DOUBLE_BITS)
-        small = np.asarray(image >> dropped, dtype=float)
-        try:
-            by_cosine, by_shift, _ = self.correction(np.ldexp(small, -kept), ACCURACY)
-        except np.linalg.LinAlgError as failure:
-            raise NoTwist(f"Newton's matrix is singular ({failure})") from failure
+class TwistProblem(Problem):
+    """J (dc, domega) = 0 where ln A of one seed changes by one: dc and domega are unknown.
+
+    place : of that seed. Refinement begins with a change of nothing but its amplitude.
+    """
+
+    def __init__(self, tangents: Tangents, place: int) -> None:
+        equation, self.tangents = tangents.equation, tangents
+        self.bits, self.mask = tangents.bits, tangents.mask
+        self._seeds = equation.seed_rows, equation.seed_columns
+        at = equation.seed_rows[place], equation.seed_columns[place]
+        self.coefficients = np.zeros(self.mask.shape, dtype=object)
+        self.coefficients[at] = tangents.c[at]
+        self.frequencies = np.zeros(len(equation.seeds), dtype=object)
+        self.largest = abs(int(tangents.c[at]))
+        self.frequency_scale = 1.0
+
+    def residual(self) -> Integers:
+        return self.tangents.image(self.coefficients, self.frequencies)
+
+    def solve(self, residual: Floats) -> tuple[Floats, Floats]:
+        by_cosine, by_shift, _ = self.tangents.correction(residual, ACCURACY)
+        by_cosine[self._seeds] = 0
         return by_cosine, by_shift
+
+    def after_step(self, digits: float) -> None:
+        """Nothing: the equations are linear, so that no step leads elsewhere."""

@@ -14,19 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
-from symfpu.normal.linearised_standing import is_sine, is_standing
-from symfpu.normal.torus import Solution
-from symfpu.refinement.equation import Floats, Ints
-from symfpu.tori.ring_torus import RingTorus
+from symfpu.chain.projections.standing import is_sine
+from symfpu.refinement.lattice import Floats, Ints
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Values = NDArray[Any]  # doubles or complex doubles
 
 
-def mode_shapes(torus: Solution) -> Values:
+def mode_shapes(torus: QuasiPeriodic) -> Values:
     """What each mode displaces, in the order of chain.mode_numbers; (N-1, coordinates)."""
-    if not isinstance(torus, RingTorus):
+    if not torus.chain.periodic:
         return np.eye(torus.chain.N - 1)
-    if is_standing(torus):
+    if torus.stands:
         return _standing(torus.chain)
     return _travelling(torus.chain)
 
@@ -46,17 +45,17 @@ def _standing(ring: Chain) -> Floats:
     return np.array(rows)
 
 
-def by_mode(torus: Solution, harmonics: Ints, coefficients: Floats) -> Values:
+def by_mode(torus: QuasiPeriodic, harmonics: Ints, coefficients: Floats) -> Values:
     """Coefficients (..., H, C) of a torus, or of its changes, by all modes; (..., H, N-1).
 
     harmonics : (H, s). C as in `ActionChanges`: complex of travelling waves, whose
     sin(a - nu.theta) is the real part of i exp(i (nu.theta - a)).
     """
-    if not isinstance(torus, RingTorus):
+    if not torus.chain.periodic:
         return coefficients
     numbers = np.array(torus.chain.mode_numbers)
     every = np.zeros((*coefficients.shape[:-1], len(numbers)), dtype=complex)
-    if is_standing(torus):
+    if torus.stands:
         sines = [is_sine(torus.chain, q) for q in numbers.tolist()]
         every[..., sines] = coefficients
         return every.real

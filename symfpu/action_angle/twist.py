@@ -7,7 +7,7 @@ convex in the actions, and Nekhoroshev's estimates are at their best.
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -19,16 +19,15 @@ from symfpu.action_angle.actions import actions
 from symfpu.action_angle.at_rest import in_words
 from symfpu.action_angle.newton_twist import NoTwist, changes_by_newton
 from symfpu.action_angle.precise_twist import changes_in_digits
-from symfpu.action_angle.series_twist import changes_of_series, solved
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
-from symfpu.normal.torus import PRECISE, Solution
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Numbers, text, with_digits
-from symfpu.tori.ring_torus import RingTorus
-from symfpu.tori.torus import QTorus
+from symfpu.normal.torus import in_digits
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text, with_digits
+from symfpu.numbers.public import public
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 SOLVED = 1e-8  # relative residual above which a torus is not refined
 SHOWN_DIGITS = 10
@@ -40,7 +39,7 @@ class Twist(Gridded):
 
     chain, seeds : of the torus. frequencies, actions : of every angle, (s,). matrix : Lambda as it
     was computed, (s, s), symmetric on a torus: see `asymmetry`.
-    method : "series" or "Newton". digits : of numbers that are mpf; None for doubles. Ours.
+    method : "Newton". digits : of numbers that are mpf; None for doubles. Ours.
 
     >>> from symfpu import Chain, refine, torus_at_amplitudes, twist
     >>> twist(refine(torus_at_amplitudes(Chain(8, beta=1), {1: "0.1", 3: "0.1"}, 4)))
@@ -163,34 +162,34 @@ def _rounding(digits: int | None) -> float:
     return 1e-10 if digits is None else 10.0**-digits
 
 
-def twist(solution: Solution) -> Twist:
+@public
+def twist(solution: QuasiPeriodic) -> Twist:
     """Lambda = d omega / d I of a torus or breather, its signature and determinants.
 
-    solution : a torus of a series, whose truncated sums are differentiated exactly, to all its
-        digits; or any refined solution (`refine`, breathers), by Newton's matrix: in doubles, of
-        one that was refined to many digits (PreciseTorus, PreciseOrbit) with as many; of a ring,
+    solution : a refined torus (`refine`) or a breather, by Newton's matrix: in doubles, of one
+        that was refined to many digits (PreciseTorus) with as many; of a ring,
         refined: travelling waves, or what `unfold` gave. Dimensionless.
 
-    Nothing is a difference of two tori. Lambda of an exact torus is symmetric; that of a truncated
-    series as far as it is a torus. Returns Twist. Ours. Raises InputError for a solution that is
-    neither; NoTwist where the amplitudes do not tell the actions; TooLarge for series whose program
-    does not fit: refine the torus.
+    Nothing is a difference of two tori. Lambda of an exact torus is symmetric. A truncated series
+    is no torus: its residual must be below 1e-8, else refine it. Returns Twist. Ours. Raises
+    InputError for a solution that is not refined; NoTwist where the amplitudes do not tell the
+    actions.
 
     >>> from symfpu import Chain, breather_at_amplitude
     >>> twist(breather_at_amplitude(Chain(8, beta=1), 1, "0.01"))
     Twist(N=8, beta=1, seeds=1, positive definite, smallest eigenvalue 0.0214..., ...)
     """
     by_angle = actions(solution)
-    places = solution.digits if isinstance(solution, (QTorus, *PRECISE)) else None
-    matrix, method = _lambda(solution)
+    _require_refined(solution)
+    places = solution.digits if in_digits(solution) else None
     frequencies = _rounded(list(solution.frequencies), places)
     return Twist(
         chain=solution.chain,
         seeds=solution.seeds,
         frequencies=frequencies,
         actions=_rounded(list(by_angle.values()), places),
-        matrix=with_digits(matrix, places),
-        method=method,
+        matrix=with_digits(_lambda(solution), places),
+        method="Newton",
         digits=places,
     )
 
@@ -205,40 +204,45 @@ def _rounded(values: list[Any], digits: int | None) -> Numbers:
         return with_digits(np.array(numbers, dtype=object), digits)
 
 
-def _lambda(solution: Solution) -> tuple[Numbers, str]:
-    """d omega / d I, and how it was found."""
-    if isinstance(solution, QTorus):
-        by_amplitude, method = changes_of_series(solution), "series"
-    else:
-        _require_refined(solution)
-        by_amplitude, method = _by_newton(solution), "Newton"
-    frequencies, of_actions = by_amplitude
-    with _context_of(solution):
+def _lambda(solution: QuasiPeriodic) -> Numbers:
+    """d omega / d I, of what both change by with the amplitudes."""
+    frequencies, by_amplitude = _by_newton(solution)
+    precise = in_digits(solution)
+    context = MULTIPRECISION.context(solution.digits) if precise else nullcontext()
+    with context:
         try:
-            return solved(of_actions.T, frequencies.T).T, method
+            return _solved(by_amplitude.T, frequencies.T).T
         except np.linalg.LinAlgError as failure:
             raise NoTwist("the actions do not change with the amplitudes") from failure
 
 
-def _context_of(solution: Solution) -> AbstractContextManager[Any]:
-    """Of the precision of its numbers."""
-    if isinstance(solution, RingTorus):
-        return DOUBLES.context(None)
-    return solution.numbers.context(solution.digits)
+def _solved(matrix: Numbers, right: Numbers) -> Numbers:
+    """matrix^-1 right, in doubles or mpf; LinAlgError for a singular matrix."""
+    if matrix.dtype != object:
+        return np.asarray(np.linalg.solve(matrix, right))
+    try:
+        inverse = mpmath.matrix(matrix.tolist()) ** -1
+    except ZeroDivisionError as failure:
+        raise np.linalg.LinAlgError(str(failure)) from failure
+    return np.asarray(np.array(inverse.tolist(), dtype=object) @ right)
 
 
-def _by_newton(solution: Solution) -> tuple[Numbers, Numbers]:
+def _by_newton(solution: QuasiPeriodic) -> tuple[Numbers, Numbers]:
     """In digits where the solution has those of the equations, in doubles else."""
-    if isinstance(solution, RingTorus):
-        return changes_by_newton(solution)
-    if isinstance(solution, PRECISE):
+    if in_digits(solution):
         return changes_in_digits(solution)
     return changes_by_newton(solution.in_doubles())
 
 
-def _require_refined(solution: Solution) -> None:
-    residual = solution.residual()
-    if not residual <= SOLVED:
-        given = f"a {type(solution).__name__} with residual {residual:.2g}"
-        allowed = f"a torus of a series, or one refined to a residual below {SOLVED:g}"
+def is_refined(solution: QuasiPeriodic) -> bool:
+    """Whether Newton's matrix at the solution is that of a torus."""
+    return bool(solution.residual() <= SOLVED)
+
+
+def _require_refined(solution: QuasiPeriodic) -> None:
+    """InputError for what is not refined."""
+    if not is_refined(solution):
+        kind, residual = type(solution).__name__, float(solution.residual())
+        given = f"a {kind} with residual {residual:.2g}"
+        allowed = f"a torus or breather refined to a residual below {SOLVED:g}"
         raise InputError("solution", given, allowed, "pass refine(solution)")

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.grading import Ints, canonical_count, monomial_count
-from symfpu.algebra.selection import CosineModes
+from symfpu.algebra.selection import Modes
 
 Floats = NDArray[np.float64]
 Bonds = TypeVar("Bonds")
@@ -108,24 +108,23 @@ class DenseRing(ABC, Generic[Bonds]):
     reduces = False  # whether the kernels leave their sums in normal form
 
     def __init__(
-        self, space: CosineModes, *, workers: int | None = None, points: int | None = None
+        self, space: Modes, *, workers: int | None = None, points: int | None = None
     ) -> None:
-        """points : values kept for each monomial; default those on half of the bonds."""
+        """points : values kept for each monomial; default as many as the modes ask for."""
         # lazy: numba takes longer to import than all the rest
-        from symfpu.algebra import kernels, one_seed
+        from symfpu.algebra import kernels
 
-        self._kernels, self._one_seed = kernels, one_seed
+        self._kernels = kernels
         self.space, self.grading = space, space.grading
         self.exponent = 0
         self.multiply_adds = 0
         self._workers = workers or threads_of_a_computation()
         self._pool = ThreadPoolExecutor(self._workers)
-        self._points = points or space.half
-        self._convolves = len(space.seeds) == 1 and self.modulus is None
-        self._lanes = 8 if self._convolves else self._lane_width()
+        self._points = points or space.points
+        self._lanes = self._lane_width()
         self._slices = -(-self._points // self._lanes)
         rows, seed_slices = int(self.grading.first_row[-1]), -(-len(space.seeds) // 8)
-        kept = (self._slices, self._kept_count(), self._lanes)
+        kept = (self._slices, rows, self._lanes)
         self._bonds = aligned_zeros(kept, self.kind)
         self._powers: dict[
             int, Floats
@@ -189,59 +188,39 @@ class DenseRing(ABC, Generic[Bonds]):
         """As of `Ring`."""
 
     def _transforms(self) -> tuple[Floats, Floats]:
-        """The cosines cos(q (j + 1/2) pi / N) on the first half of the bonds, and the way back.
+        """From columns to the points of the bonds that are kept, and the way back.
 
-        Shapes (N-1, points), padded with zeros to whole rows. The way back has the weights 4/N,
-        and half of it for a bond that is its own mirror image.
+        Shapes (columns, points), padded with zeros to whole rows.
         """
-        N, half = self.space.N, self.space.half
-        odd = 2 * np.arange(half) + 1
-        angles = np.outer(np.arange(1, N), odd) % (4 * N)
-        there = np.zeros((N - 1, self._slices * self._lanes))
-        there[:, :half] = self._cosines(np.minimum(angles, 4 * N - angles))
-        weights = np.full(half, self._quotient(4.0, N))
-        if N % 2:
-            weights[-1] = self._quotient(2.0, N)
-        every = np.broadcast_to(weights, (N - 1, half)).copy()
-        back = there.copy()
-        back[:, :half] = self._times(back[:, :half].copy(), every)
+        angles, share, weights = self.space.transform()
+        columns, points = angles.shape
+        cosines = self._cosines(angles)
+        there, back = np.zeros((2, columns, self._slices * self._lanes))
+        there[:, :points] = self._times(cosines.copy(), self._quotient(share))
+        of_points = np.array([self._quotient(weight) for weight in weights])
+        every = np.broadcast_to(of_points, cosines.shape).copy()
+        back[:, :points] = self._times(cosines, every)
         return there, back
 
-    def _quotient(self, numerator: float, denominator: int) -> float:
+    def _quotient(self, value: Fraction) -> float:
         """A quotient as an element of the ring."""
-        reciprocal = np.full(1, self._reciprocal(denominator))
-        return float(self._times(reciprocal, numerator)[0])
-
-    def _parts(self, degree: int) -> list[tuple[Ints, slice]]:
-        """Canonical monomials of each parity with the modes of that parity."""
-        parity = self.space.parity(degree)
-        even, odd = (np.flatnonzero(parity == p) for p in (0, 1))
-        return [(even, slice(1, None, 2)), (odd, slice(0, None, 2))]
+        reciprocal = np.full(1, self._reciprocal(value.denominator))
+        return float(self._times(reciprocal, float(value.numerator))[0])
 
     def _rows(self, degree: int) -> slice:
         first, end = self.grading.first_row[degree : degree + 2]
         return slice(int(first), int(end))
 
-    def _kept_count(self) -> int:
-        """Rows of what is kept on the bonds."""
-        return int(self.grading.first_row[-1])
-
-    def _kept_rows(self, degree: int) -> Any:
-        """Those of a degree."""
-        return self._rows(degree)
-
     def seed_terms(self) -> Floats:
-        modes = np.zeros((len(self.space.seeds), self.space.N - 1))
-        powers = self.grading.powers(1)
-        for row, power in enumerate(powers):
-            seed = self.space.seeds[int(np.argmax(power))]
-            modes[row, seed - 1] = 1.0
+        modes = np.zeros((len(self.space.seeds), self.space.columns))
+        of_rows = self.grading.powers(1).argmax(axis=1)
+        modes[np.arange(len(modes)), self.space.seed_columns[of_rows]] = 1.0
         return modes
 
     def put(self, degree: int, modes: Floats) -> None:
         self._degrees.append(degree)
         self._modes.append(modes)
-        for rows, columns in self._parts(degree):
+        for rows, columns in self.space.parts(degree):
             values = self._matrix_product(modes[rows, columns], self._to_bonds[columns])
             self._store(self._bonds, degree, rows, values)
         self._store_seed_modes(degree, modes)
@@ -263,10 +242,10 @@ class DenseRing(ABC, Generic[Bonds]):
             self.grading.canonical(degree),
             self.grading.conjugate(degree),
         )
-        for i, q in enumerate(self.space.seeds):
+        for i, column in enumerate(self.space.seed_columns):
             slice_, lane = divmod(i, 8)
             for rows in (canonical, conjugate):
-                self._seed_modes[slice_, base + rows, lane] = modes[:, q - 1]
+                self._seed_modes[slice_, base + rows, lane] = modes[:, column]
 
     def _product(
         self,
@@ -287,9 +266,6 @@ class DenseRing(ABC, Generic[Bonds]):
         shape = (slices, rows.stop - rows.start, width)
         if not splits:
             return aligned_zeros(shape)
-        other = None if sparse else self._special(left, right, degree, splits, symmetric)
-        if other is not None:
-            return other
         out = self._place(shape)
         blocks = self.grading.wanted_blocks(degree)
         lanes = (0.0,) * width
@@ -324,76 +300,9 @@ class DenseRing(ABC, Generic[Bonds]):
             self.multiply_adds += count
         return out if self.reduces else self._reduced(out)
 
-    def _special(
-        self,
-        left: Floats,
-        right: Floats,
-        degree: int,
-        splits: list[tuple[int, int]],
-        symmetric: bool,
-    ) -> Floats | None:
-        """The product where there is a faster way than by tables: of one seed by convolution."""
-        if not self._convolves:
-            return None
-        rows = self._rows(degree)
-        out = aligned_zeros((len(left), rows.stop - rows.start, left.shape[2]))
-        self._convolve(left, right, out, splits, symmetric)
-        return out
-
     def _place(self, shape: tuple[int, ...]) -> Floats:
         """Where a product comes; rows of canonical monomials are all that need not be zeros."""
         return aligned_zeros(shape)
-
-    def _convolve(
-        self,
-        left: Floats,
-        right: Floats,
-        out: Floats,
-        splits: list[tuple[int, int]],
-        symmetric: bool,
-    ) -> None:
-        """Add the products of all splits of series in one seed, canonical rows only."""
-        if not symmetric:
-            self._add_convolutions(left, right, out, splits)
-            return
-        # left is right: a split into two degrees stands for both orders
-        unequal = [(d, e) for d, e in splits if d != e]
-        self._add_convolutions(left, right, out, unequal)
-        out *= 2.0
-        self._add_convolutions(left, right, out, [(d, e) for d, e in splits if d == e])
-
-    def _add_convolutions(
-        self, left: Floats, right: Floats, out: Floats, splits: list[tuple[int, int]]
-    ) -> None:
-        slices, rows, width = out.shape
-        lanes = (0.0,) * width
-        starts, table = (
-            self.grading.first_row,
-            np.array(splits, dtype=np.int64).reshape(-1, 2),
-        )
-        tiles = np.arange(rows // 2, rows, self._one_seed.TILE)
-
-        def task(part: tuple[int, int]) -> int:
-            slice_, first = part
-            some = tiles[first::chunks]
-            count = self._one_seed.convolve(
-                lanes,
-                left[slice_],
-                right[slice_],
-                out[slice_],
-                table,
-                starts,
-                some,
-                *self._reductions(slice_),
-            )
-            return int(count)
-
-        parallel = self._pairs(splits) * slices * width >= PARALLEL_FROM
-        chunks = min(4 * self._workers, len(tiles)) if parallel else 1
-        parts = [(s, c) for s in range(slices) for c in range(chunks)]
-        self.multiply_adds += sum(
-            self._pool.map(task, parts) if parallel else map(task, parts)
-        )
 
     def _pairs(self, splits: list[tuple[int, int]]) -> int:
         """How many pairs of monomials the splits have."""
@@ -433,8 +342,8 @@ class DenseRing(ABC, Generic[Bonds]):
         self._store(self._powers[power], degree, np.arange(len(values)), values)
 
     def secular(self, degree: int, modes: NDArray[Any]) -> NDArray[Any]:
-        seeds = zip(self.space.seeds, self.secular_rows(degree), strict=True)
-        return np.stack([modes[at, q - 1] for q, at in seeds], axis=1)
+        seeds = zip(self.space.seed_columns, self.secular_rows(degree), strict=True)
+        return np.stack([modes[at, column] for column, at in seeds], axis=1)
 
     def secular_rows(self, degree: int) -> list[Ints]:
         """For each seed which canonical monomials have its harmonic nu = e_q, one a row of
@@ -512,8 +421,8 @@ class DenseRing(ABC, Generic[Bonds]):
     ) -> Floats:
         _, index = self.grading.harmonics(degree)
         bracket = np.negative(force, out=force)
-        seeds = np.array(self.space.seeds) - 1
-        bracket[:, seeds] += corrected
+        own, theirs = self.space.of_seeds(degree)
+        bracket[own] += corrected[theirs]
         return self._times(self._reduced(bracket), multipliers[index])
 
     def results(self) -> tuple[list[Floats], list[Floats], Fraction]:
@@ -585,7 +494,7 @@ class ValuesRing(DenseRing[Floats]):
             self._power_degrees[name] = list(self._degrees)
         missing = [d for d in self._degrees if d not in self._completed[name]]
         for degree in missing:
-            rows, target = self._kept_rows(degree), self._powers[name]
+            rows, target = self._rows(degree), self._powers[name]
             weight = self.number(Fraction(degree) if factor is None else factor)
             own = self._times(self._bonds[:, rows].astype(np.float64), weight)
             own += target[:, rows]
@@ -608,8 +517,8 @@ class ValuesRing(DenseRing[Floats]):
 
     def project(self, degree: int, parts: Sequence[tuple[float, Floats]]) -> Floats:
         canonical = self.grading.canonical(degree)
-        modes = np.zeros((len(canonical), self.space.N - 1))
-        for rows, columns in self._parts(degree):
+        modes = np.zeros((len(canonical), self.space.columns))
+        for rows, columns in self.space.parts(degree):
             chosen, back = canonical[rows], self._to_modes[columns].T
             for coefficient, values in parts:
                 bonds = np.concatenate([part[chosen] for part in values], axis=1)

@@ -26,15 +26,12 @@ from numpy.typing import NDArray
 from symfpu.algebra.dense import Floats, threads_of_a_computation
 from symfpu.algebra.fixedpoint_tables import CollectedWords, Factors
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.several_primes import (
-    Portions,
-    SeveralPrimesRing,
-    residue_basis,
-)
+from symfpu.algebra.several_primes import Portions, SeveralPrimesRing, largest_prime
 from symfpu.algebra.words import (
     LIMB_BITS,
     SIZE_ERROR,
     IntegerTable,
+    ResidueBasis,
     divided,
     words_of,
 )
@@ -118,7 +115,8 @@ class FixedPointRing:
     def __init__(self, space: CosineModes, precision: Precision) -> None:
         self.space, self.grading, self.precision = space, space.grading, precision
         bits = precision.bits + precision.headroom
-        self.basis = residue_basis(space.grading, precision.bits + bits)
+        largest = largest_prime(space.grading.degree)
+        self.basis = ResidueBasis(precision.bits + bits, largest)
         self._rounded_basis = self.basis.beginning(bits + 1)
         self._image = SeveralPrimesRing(space, self.basis)
         self._threads = threads_of_a_computation()

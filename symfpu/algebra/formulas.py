@@ -84,6 +84,10 @@ class NodeTable(NDArrayOperatorsMixin):
         )
         return found[()]
 
+    def rows(self, places: Sequence[int]) -> NodeTable:
+        """A table of some of the rows."""
+        return NodeTable(self.program, self.nodes[list(places)], expanded=self.expanded)
+
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         arrays = [np.asarray(x) if isinstance(x, NodeTable) else x for x in inputs]
         return getattr(ufunc, method)(*arrays, **options)

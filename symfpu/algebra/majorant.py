@@ -70,6 +70,7 @@ class MajorantRing(DoublesRing[Bounds]):
     """
 
     name = "majorant"
+    space: CosineModes
     grows = True
 
     def __init__(
@@ -155,7 +156,7 @@ class MajorantRing(DoublesRing[Bounds]):
     def _store_bonds(self, degree: int, modes: Floats, sizes: Floats) -> None:
         """Moduli and radii on the bonds, and what products take of both."""
         known = self._tables[degree]
-        for parity, (rows, columns) in enumerate(self._parts(degree)):
+        for parity, (rows, columns) in enumerate(self.space.parts(degree)):
             to_bonds = self._to_bonds[columns]
             values = known[rows, columns] @ to_bonds
             fresh = np.outer(COSINE * sizes[rows] + NEAREST_ROUNDING, self._noise[parity])
@@ -283,7 +284,7 @@ class MajorantRing(DoublesRing[Bounds]):
         for coefficient, bounds in parts:
             scale = coefficient * bounds.factor / self._unit**bounds.power
             modes += self._fresh(bounds, abs(scale))[:, None]
-            for rows, columns in self._parts(degree):
+            for rows, columns in self.space.parts(degree):
                 back = self._to_modes[columns].T
                 passed[rows, columns] += scale * bounds.radii[rows] @ back
                 if bounds.lost is not None:

@@ -18,7 +18,7 @@ class RealCyclotomic:
     value : a polynomial over the rationals, of less than the field's degree. modulus : the minimal
     polynomial. Rationals and integers may stand on the other side of an operator.
 
-    >>> two, x, *_ = double_cosines(8)  # x = 2 cos(pi / 4), the square root of 2
+    >>> two, x, *_ = double_cosines(8, 3)  # x = 2 cos(pi / 4), the square root of 2
     >>> x * x == two, 1 / x == x / 2, bool(x * x - 2)
     (True, True, False)
     """
@@ -93,10 +93,10 @@ def _plain(other: Any) -> Any:
     return other.value if isinstance(other, RealCyclotomic) else other
 
 
-def double_cosines(m: int) -> Sequence[RealCyclotomic]:
-    """2 cos(2 pi k / m) for k = 0 .. m - 1, in the field of m >= 3."""
+def double_cosines(m: int, count: int) -> Sequence[RealCyclotomic]:
+    """2 cos(2 pi k / m) for k = 0 .. count - 1, in the field of m >= 3."""
     modulus = flint.fmpq_poly(flint.fmpz_poly.cos_minpoly(m))
-    return [RealCyclotomic(value % modulus, modulus) for value in _double_chebyshev(m)]
+    return [RealCyclotomic(value % modulus, modulus) for value in _double_chebyshev(count)]
 
 
 def _double_chebyshev(count: int) -> list[Any]:

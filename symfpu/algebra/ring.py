@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, Protocol
 
-from symfpu.algebra.selection import CosineModes
+from symfpu.algebra.selection import Modes
 
 Parts = Sequence[tuple[Any, Any]]  # (coefficient, bonds)
 
@@ -26,8 +26,11 @@ class Ring(Protocol):
     """
 
     name: str
-    space: CosineModes
     grows: bool
+
+    @property
+    def space(self) -> Modes:
+        """The modes and monomials of its tables."""
 
     @property
     def multiply_adds(self) -> int:

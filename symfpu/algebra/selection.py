@@ -8,7 +8,11 @@ seed), folded into 0 .. N, and no other.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from fractions import Fraction
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,7 +101,90 @@ def _signed_sums(turn: int, seeds: Sequence[int], power: Ints) -> Ints:
     return np.asarray(counts)
 
 
-class CosineModes:
+NO_SEED = -1
+
+
+class Transform(NamedTuple):
+    """What modes are on the bonds that are kept, and the way back.
+
+    The stored function is c_j = share sum_q u_q cos(angle_qj pi / 2N), and u_q of values is the sum
+    of weight_j cos(angle_qj pi / 2N) times them. angles : (C, points), in 0 .. 2N.
+    weights : one a point.
+    """
+
+    angles: Ints
+    share: Fraction
+    weights: tuple[Fraction, ...]
+
+
+class Modes(ABC):
+    """The modes that monomials have coefficients in: all that a ring asks about a chain's ends.
+
+    N, seeds, grading : as given. columns : how many there are, C. points : values kept for a
+    monomial. seed_columns : that of each seed, (s,).
+    """
+
+    columns: int
+    points: int
+    seed_columns: Ints
+
+    def __init__(self, N: int, seeds: Sequence[int], grading: Grading) -> None:
+        self.N, self.seeds, self.grading = N, tuple(seeds), grading
+
+    @abstractmethod
+    def transform(self) -> Transform:
+        """Between columns and points."""
+
+    @abstractmethod
+    def parts(self, degree: int) -> list[tuple[Ints, slice]]:
+        """Canonical monomials of a degree with the columns that they can have."""
+
+    @abstractmethod
+    def mask(self, degree: int) -> NDArray[np.bool_]:
+        """Whether a canonical monomial of this degree can carry a mode; (canonical, C)."""
+
+    @abstractmethod
+    def mask_by_harmonic(self, degree: int) -> NDArray[np.bool_]:
+        """Whether a harmonic can appear in a mode at this degree; shape (harmonics, C)."""
+
+    @abstractmethod
+    def wave_numbers(self, harmonics: Ints) -> Ints:
+        """Of the modes in which harmonics (H, s) live, in 0 .. N-1; (H | 1, C)."""
+
+    @abstractmethod
+    def seeds_met(self, harmonics: Ints) -> Ints:
+        """The number of the seed whose mode that is, NO_SEED where there is none; (H | 1, C)."""
+
+    @abstractmethod
+    def named(self, harmonic: Ints, wave: int) -> tuple[tuple[int, ...], int]:
+        """A harmonic and its mode by the wave number, as they are named to a reader."""
+
+    @abstractmethod
+    def column(self, q: int, degree: int) -> tuple[int, NDArray[np.bool_] | None]:
+        """Where the mode q stands, and which canonical monomials it has there; None for all."""
+
+    @abstractmethod
+    def in_mode(self, q: int, harmonics: Ints) -> tuple[Any, int]:
+        """Entries of (H, C) in the mode q, whatever the direction of a wave."""
+
+    @abstractmethod
+    def of_seeds(self, degree: int) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+        """Entries of (canonical, C) in the mode of a seed, and those of (canonical, s) with it."""
+
+    def gauge(self, harmonics: Ints) -> NDArray[np.bool_]:
+        """Where a harmonic is +-e_q in the seed mode q itself, which the gauge leaves no term.
+
+        harmonics : (H, s). Returns (H, C).
+        """
+        moduli = np.abs(harmonics)
+        rows = np.flatnonzero(moduli.sum(axis=1) == 1)
+        seeds = moduli[rows].argmax(axis=1)
+        found = np.zeros((len(harmonics), self.columns), dtype=np.bool_)
+        found[rows] = self.seeds_met(harmonics[rows]) == seeds[:, None]
+        return found
+
+
+class CosineModes(Modes):
     """Modes q = 1 .. N-1 on N bonds with the monomials of a grading: parities and masks.
 
     A monomial is even or odd with sum_i e_i q_i. It carries modes of that parity only, and its
@@ -115,11 +202,54 @@ class CosineModes:
 
         Cancelling couplings are exact zeros there.
         """
-        self.N, self.seeds = N, tuple(seeds)
-        self.grading, self.product_degree = grading, product_degree
-        self.half = (N + 1) // 2
-        self._table = PowerTable(N, seeds, grading.degree)
+        super().__init__(N, seeds, grading)
+        self.product_degree = product_degree
+        self.half = self.points = (N + 1) // 2
+        self.columns = N - 1
+        self.seed_columns = np.array(self.seeds) - 1
         self._orders: dict[int, tuple[Ints, int]] = {}
+
+    @cached_property
+    def _table(self) -> PowerTable:
+        return PowerTable(self.N, self.seeds, self.grading.degree)
+
+    def transform(self) -> Transform:
+        """The cosines cos(q (j + 1/2) pi / N) on the first half of the bonds.
+
+        The way back has the weights 4/N, and half of it for a bond that is its own mirror image.
+        """
+        N = self.N
+        angles = np.outer(np.arange(1, N), 2 * np.arange(self.half) + 1) % (4 * N)
+        weights = [Fraction(4, N)] * self.half
+        if N % 2:
+            weights[-1] = Fraction(2, N)
+        return Transform(np.minimum(angles, 4 * N - angles), Fraction(1), tuple(weights))
+
+    def parts(self, degree: int) -> list[tuple[Ints, slice]]:
+        """Canonical monomials of each parity with the modes of that parity."""
+        parity = self.parity(degree)
+        return [(np.flatnonzero(parity == p), self.modes(p)) for p in (0, 1)]
+
+    def wave_numbers(self, harmonics: Ints) -> Ints:
+        return np.arange(1, self.N)[None]
+
+    def seeds_met(self, harmonics: Ints) -> Ints:
+        met = np.full((1, self.columns), NO_SEED)
+        met[0, self.seed_columns] = np.arange(len(self.seeds))
+        return met
+
+    def named(self, harmonic: Ints, wave: int) -> tuple[tuple[int, ...], int]:
+        return tuple(map(int, harmonic)), int(wave)
+
+    def column(self, q: int, degree: int) -> tuple[int, NDArray[np.bool_] | None]:
+        return q - 1, None
+
+    def in_mode(self, q: int, harmonics: Ints) -> tuple[Any, int]:
+        return slice(None), q - 1
+
+    def of_seeds(self, degree: int) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+        every = slice(None)
+        return (every, self.seed_columns), (every, every)
 
     def parity(self, degree: int) -> Ints:
         """0 or 1 for each canonical monomial of a degree."""
@@ -139,17 +269,12 @@ class CosineModes:
         return slice(1 - parity, None, 2)
 
     def mask(self, degree: int) -> NDArray[np.bool_]:
-        """Whether a canonical monomial of this degree can carry a mode.
-
-        Shape (canonical, N-1).
-        """
         powers = self.grading.powers(degree)
         if degree == self.product_degree:
             return product_modes_of_seeds(self.N, self.seeds, powers)
         return self._table.carried(degree, powers)
 
     def mask_by_harmonic(self, degree: int) -> NDArray[np.bool_]:
-        """Whether a harmonic can appear in a mode at this degree; shape (harmonics, N-1)."""
         nu, index = self.grading.harmonics(degree)
         order = np.argsort(index, kind="stable")
         starts = np.searchsorted(index[order], np.arange(len(nu)))

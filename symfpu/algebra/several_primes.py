@@ -14,18 +14,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from functools import lru_cache
 from math import isqrt
 from typing import Any
 
 import numpy as np
 
-from symfpu.algebra.at_points import AtPoints
-from symfpu.algebra.dense import Floats, ValuesRing, aligned_zeros, degrees_of
-from symfpu.algebra.grading import Grading, Ints
+from symfpu.algebra.dense import Floats, ValuesRing, aligned_zeros
+from symfpu.algebra.grading import Ints
 from symfpu.algebra.rooms import Rooms
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.words import ResidueBasis, TooFewPrimes
+from symfpu.algebra.words import ResidueBasis
 
 PRODUCTS = 128  # that sums may have between two reductions, at least
 EXACT = 2**52  # integers below it are exact in doubles, and so are their remainders
@@ -33,7 +31,6 @@ EXACT = 2**52  # integers below it are exact in doubles, and so are their remain
 _OWNER = (
     "integers are transformed and rounded by the fixed-point ring that owns these residues"
 )
-AHEAD = 8  # degrees whose squares are begun at once
 PORTION = 4096  # integers on all bonds or modes of the monomials that are converted at once
 LANES = 32  # of a row: four registers of AVX-512, eight of AVX2
 # residues on bonds of some canonical monomials, (primes, some, half)
@@ -45,25 +42,6 @@ def products_between_reductions(degree: int) -> int:
     return max(PRODUCTS, degree + 4)
 
 
-@lru_cache(maxsize=4)
-def at_points(grading: Grading) -> AtPoints | None:
-    """How series are kept at points; None where they are kept by their coefficients."""
-    return AtPoints(grading) if AtPoints.fits(grading) else None
-
-
-def residue_basis(grading: Grading, bits: int) -> ResidueBasis:
-    """Primes for integers of so many bits, at whose roots of unity there are points, if they are
-    enough of them; there are fewer at high orders.
-    """
-    largest, points = largest_prime(grading.degree), at_points(grading)
-    if points is not None:
-        try:
-            return ResidueBasis(bits, largest, points.divisor)
-        except TooFewPrimes:
-            pass
-    return ResidueBasis(bits, largest)
-
-
 def largest_prime(degree: int) -> int:
     """Primes below this keep so many products of residues exact: p^2/4 each, and a little more."""
     return isqrt(4 * EXACT // (products_between_reductions(degree) + 1))
@@ -73,21 +51,13 @@ class SeveralPrimesRing(ValuesRing):
     """Coefficients modulo the primes of a basis; what it stores was rounded by its owner."""
 
     name = "several primes"
+    space: CosineModes
     reduces = True
     kind = np.float32  # holds residues of such primes: half of the memory that kernels read
 
     def __init__(self, space: CosineModes, basis: ResidueBasis) -> None:
-        # lazy: numba takes longer to import than all the rest
-        from symfpu.algebra import point_loops
-
         self.basis = basis
-        self._point_loops = point_loops
-        points = at_points(space.grading)
-        fits = points is not None and points.divide(basis.primes)
-        self._at_points = points if fits else None
         self._limit = products_between_reductions(space.grading.degree)
-        # the first of the degrees to which lower ones gave their squares already, and these
-        self._early: tuple[int, Floats] = (0, np.zeros((0, 0, 0, 0)))
         count, seeds = len(basis), len(space.seeds)
         super().__init__(space, points=count * space.half)
         self._moduli = self._by_slice(np.repeat(basis.moduli, space.half), self._lanes)
@@ -99,11 +69,6 @@ class SeveralPrimesRing(ValuesRing):
         self._corrections = aligned_zeros(of_factors, self.kind)
         widest = max(self._moduli.size, self._seed_moduli.size)
         self._rooms = Rooms((last.stop - last.start) * widest)
-        if self._at_points:
-            there, back = self._at_points.powers, self._at_points.inverse_powers
-            self._there, self._back = (
-                self._by_lane(f(basis.primes)) for f in (there, back)
-            )
 
     def _by_slice(self, moduli: Floats, width: int) -> Floats:
         """Moduli of all lanes, (slices, width); lanes without a residue are zero, modulo 1."""
@@ -112,27 +77,11 @@ class SeveralPrimesRing(ValuesRing):
         padded[: len(moduli)] = moduli
         return padded.reshape(slices, width)
 
-    def _by_lane(self, table: Floats) -> Floats:
-        """Residues (entries, primes) for every lane, (slices, entries, lanes)."""
-        lanes = np.zeros((len(table), self._moduli.size))
-        lanes[:, : self._points] = np.repeat(table, self.space.half, axis=1)
-        return np.ascontiguousarray(
-            np.moveaxis(lanes.reshape(len(table), *self._moduli.shape), 1, 0)
-        )
-
     def _lane_width(self) -> int:
         return LANES
 
     def _place(self, shape: tuple[int, ...]) -> Floats:
         return self._rooms.take(shape)
-
-    def _kept_count(self) -> int:
-        points = self._at_points
-        return int(points.rows.first[-1]) if points else super()._kept_count()
-
-    def _kept_rows(self, degree: int) -> Any:
-        points = self._at_points
-        return points.rows_of(degree) if points else super()._kept_rows(degree)
 
     def _reductions(self, slice_: int, *, sparse: bool = False) -> tuple[Any, ...]:
         moduli = self._seed_moduli if sparse else self._moduli
@@ -180,13 +129,8 @@ class SeveralPrimesRing(ValuesRing):
 
     # what the kernels take and give, as residues (primes, ...)
 
-    def store(self, degree: int, modes: Floats) -> None:
-        """Register a degree, (primes, monomials, N-1); its bonds are stored apart."""
-        seeds = np.array(self.space.seeds) - 1
-        self.store_seeds(degree, modes[:, :, seeds])
-
     def store_seeds(self, degree: int, modes: Floats) -> None:
-        """The same by the modes of the seeds alone, (primes, monomials, s)."""
+        """Register a degree by the modes of the seeds, (primes, monomials, s)."""
         self._degrees.append(degree)
         if degree == self.grading.degree:
             return  # it is a factor of nothing
@@ -215,124 +159,19 @@ class SeveralPrimesRing(ValuesRing):
         self._keep(self._bonds, degree, values)
 
     def _keep(self, target: Floats, degree: int, values: Portions) -> None:
-        """Values of all monomials and their conjugates, or those at points.
+        """Values of all monomials and their conjugates.
 
         Not of the last degree, which is a factor of nothing.
         """
         if degree == self.grading.degree:
             return
-        if not self._at_points:
-            first = int(self.grading.first_row[degree])
-            self._put_lanes(target, degree, first, values)
-            return
-        rows = self._rows(degree)
-        own = aligned_zeros((self._slices, rows.stop - rows.start, self._lanes))
-        self._put_lanes(own, degree, 0, values)
-        self._over_slices(
-            self._point_loops.evaluate,
-            own,
-            degree,
-            self._skipped(degree),
-            self.grading.tables,
-            self._at_points.rows,
-            self._there,
-            self._at_points.places(degree),
-            target,
-        )
-
-    def _over_slices(self, loop: Callable[..., int], *arguments: Any) -> None:
-        """Run a loop of residues at points over all slices, shared among the threads."""
-        every = np.arange(self._slices)
-        lanes, common = (0.0,) * self._lanes, (self._moduli, self._limit)
-
-        def work(parts: Ints) -> int:
-            return int(loop(lanes, *arguments, *common, parts))
-
-        shares = [every[n :: self._workers] for n in range(self._workers)]
-        self.multiply_adds += sum(self._pool.map(work, shares))
-
-    def _skipped(self, degree: int) -> int:
-        """Coefficients before the first canonical one, where one seed leaves the others out."""
-        alone = len(self.space.seeds) == 1
-        return int(self.grading.canonical(degree)[0]) if alone else 0
-
-    def _put_lanes(self, target: Floats, degree: int, first: int, values: Portions) -> None:
-        """All monomials and their conjugates, from a row on."""
+        first = int(self.grading.first_row[degree])
 
         def work(some: slice) -> None:
             rows, conjugates = self._ordered(degree, some)
             self._kernels.to_lanes(values(some), target, first + rows, first + conjugates)
 
         list(self._pool.map(work, self.pieces(degree)))
-
-    def _special(self, *product: Any) -> Floats | None:
-        """At points, where there are any."""
-        return self._of_points(*product) if self._at_points else super()._special(*product)
-
-    def _of_points(
-        self,
-        left: Floats,
-        right: Floats,
-        degree: int,
-        splits: list[tuple[int, int]],
-        symmetric: bool,
-    ) -> Floats:
-        assert self._at_points is not None
-        rows = self._rows(degree)
-        out = self._place((self._slices, rows.stop - rows.start, self._lanes))
-        both = [(e, d) for d, e in splits] if symmetric else []
-        early = symmetric and self._at_points.alone
-        since, sums = self._early_squares(degree) if early else (0, None)
-        self._over_slices(
-            self._point_loops.multiply,
-            left,
-            right,
-            out,
-            degree,
-            degrees_of([*splits, *both], degree),
-            symmetric,
-            since,
-            sums,
-            self.grading.wanted_blocks(degree),
-            self._skipped(degree),
-            self.grading.tables,
-            self._at_points.rows,
-            self._back,
-            self._at_points.inverse_places(degree),
-        )
-        return out
-
-    def _early_squares(self, degree: int) -> tuple[int, Floats]:
-        """What degrees below one, which is given, give to the values of a square.
-
-        (slices, points, lanes).
-        """
-        since, sums = self._early
-        if not since <= degree < since + len(sums):
-            since = degree
-            sums = self._squares_from(degree)
-            self._early = since, sums
-        return since, sums[degree - since]
-
-    def _squares_from(self, degree: int) -> Floats:
-        """The same for a degree and the next ones, (degrees, slices, points, lanes)."""
-        assert self._at_points is not None
-        several = min(AHEAD, self.grading.degree + 1 - degree)
-        points = len(self._at_points.rows.first) - 1
-        sums = aligned_zeros((several, self._slices, points, self._lanes))
-        has = np.zeros(degree + several, dtype=np.bool_)
-        has[[d for d in self._degrees if d < degree]] = True
-
-        self._over_slices(
-            self._point_loops.square_early,
-            self._bonds,
-            sums,
-            degree,
-            has,
-            self.grading.tables,
-            self._at_points.rows,
-        )
-        return sums
 
     def store_power(self, power: int, degree: int, values: Portions) -> None:
         """Of all monomials."""
@@ -378,7 +217,7 @@ class SeveralPrimesRing(ValuesRing):
             self._weighted = aligned_zeros(self._bonds.shape)
         for j in range(1, degree):
             weight = self.number(rate * j - slope * (degree - j))
-            rows = self._kept_rows(j)
+            rows = self._rows(j)
             self._weighted[:, rows] = self._reduced(self._bonds[:, rows] * weight)
         return self._weighted
 

@@ -1,7 +1,6 @@
 """Power series in several variables, cut at a total degree, over any coefficients.
 
-The coefficients need to add and multiply, and to divide 1 where a series is inverted. Cut at
-degree 1, a series is a number with its derivatives.
+The coefficients need to add and multiply, and to divide 1 where a series is inverted.
 """
 
 from __future__ import annotations
@@ -20,7 +19,8 @@ class Truncated:
     parts : the homogeneous parts of degrees 0 .. top, each {exponents: coefficient}. size : number
     of variables.
 
-    Numbers may stand on the other side of + and *; exact zeros are not kept.
+    Numbers may stand on the other side of + and *; exact zeros are not kept. A sum or a product is
+    known as far as both of its series are.
 
     >>> from fractions import Fraction
     >>> x, y = variables([Fraction(0), Fraction(0)], 2)
@@ -59,12 +59,16 @@ class Truncated:
         """Of one monomial; the integer 0 where it is none."""
         return self.parts[sum(exponents)].get(exponents, 0)
 
+    def coefficients(self) -> list[Any]:
+        """c_0, c_1, ... of a series in one variable."""
+        return [part.get((n,), 0) for n, part in enumerate(self.parts)]
+
     def __bool__(self) -> bool:
         return any(self.parts)
 
     def __add__(self, other: Any) -> Truncated:
         if isinstance(other, Truncated):
-            pairs = zip(self.parts, other.parts, strict=True)
+            pairs = zip(self.parts, other.parts, strict=False)
             return self._with([_sum(a, b) for a, b in pairs])
         constant = _sum(self.parts[0], {self.origin: other})
         return self._with([constant, *self.parts[1:]])
@@ -83,11 +87,12 @@ class Truncated:
     def __mul__(self, other: Any) -> Truncated:
         if not isinstance(other, Truncated):
             return self._with([_times(part, other) for part in self.parts])
-        found: list[Part] = [{} for _ in self.parts]
-        for i, left in enumerate(self.parts):
+        known = min(len(self.parts), len(other.parts))
+        found: list[Part] = [{} for _ in range(known)]
+        for i, left in enumerate(self.parts[:known]):
             if not left:
                 continue
-            for j, right in enumerate(other.parts[: len(found) - i]):
+            for j, right in enumerate(other.parts[: known - i]):
                 _add_products(found[i + j], left, right)
         return self._with([_without_zeros(part) for part in found])
 
@@ -126,17 +131,6 @@ class Truncated:
         more: list[Part] = [{} for _ in range(top - self.top)]
         return self._with([*self.parts[: top + 1], *more])
 
-    def derivative(self, place: int) -> Truncated:
-        """By a variable; one degree less is known."""
-        found: list[Part] = []
-        for part in self.parts[1:]:
-            lowered = {}
-            for e, c in part.items():
-                if e[place]:
-                    lowered[_raised(e, place, -1)] = c * e[place]
-            found.append(lowered)
-        return self._with(found)
-
     def composed(self, inner: Sequence[Truncated]) -> Truncated:
         """The series of series without constants, one for each variable."""
         total = inner[0] * 0
@@ -147,6 +141,15 @@ class Truncated:
                     product = series * product
             total = total + product
         return total
+
+
+def in_one_variable(coefficients: Sequence[Any]) -> Truncated:
+    """c_0 + c_1 x + ... + c_top x^top.
+
+    >>> (1 / in_one_variable([1, -1, 0])).coefficients()
+    [Fraction(1, 1), Fraction(1, 1), Fraction(1, 1)]
+    """
+    return Truncated([{(n,): c} if c else {} for n, c in enumerate(coefficients)], 1)
 
 
 def variables(point: Sequence[Any], top: int, one: Any = 1) -> list[Truncated]:

@@ -67,48 +67,6 @@ def add_matrix_product(
     out[own, some] += matrix[own, :count] @ columns[:count, some]
 
 
-def convolution(tile: int) -> Any:
-    """The function that sums a tile of so many rows."""
-
-    def add(
-        lanes: Any, left: Any, i: int, right: Any, j: int, count: int, out: Any, o: int
-    ) -> None:
-        """out[o + t] += sum of left[i + n] right[j + t - n] over n < count, for t < tile."""
-        factors = left[i : i + count].astype(np.float64)
-        for t in range(tile):
-            backwards = right[j + t + 1 - count : j + t + 1][::-1]
-            out[o + t] += (factors * backwards).sum(axis=0)
-
-    return add
-
-
-def add_products(
-    lanes: Any,
-    left: Any,
-    lefts: Any,
-    i: int,
-    right: Any,
-    rights: Any,
-    j: int,
-    first: int,
-    last: int,
-    out: Any,
-    o: int,
-) -> None:
-    """out[o] += sum of left[i + lefts[n]] right[j + rights[n]] over first <= n < last."""
-    factors = left[i + lefts[first:last]].astype(np.float64)
-    out[o] += (factors * right[j + rights[first:last]]).sum(axis=0)
-
-
-def control() -> Any:
-    """The processor's way with subnormal numbers, which NumPy's loops leave alone."""
-    return np.uint32(0)
-
-
-def set_control(word: Any) -> None:
-    """Nothing is set."""
-
-
 def _exact_product(a: Any, b: Any) -> tuple[Any, Any]:
     """The product rounded, and what rounding took from it (Dekker)."""
     product = a * b

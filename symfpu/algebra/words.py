@@ -31,7 +31,7 @@ SIZE_ERROR = 2.0**-40  # of a sum of shares, one a prime, modulo one
 
 
 class TooFewPrimes(ArithmeticError):
-    """There are not so many primes of a kind that their product is as large as was asked for."""
+    """Integers of so many bits need more primes than there are, or than sums in doubles hold."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,20 +120,22 @@ class Scale(NamedTuple):
 class ResidueBasis:
     """Integers below `bits` bits as residues modulo enough primes up to `largest`.
 
-    divisor : of p - 1 for every prime p; even. Arrays of residues are (primes, count).
+    Arrays of residues are (primes, count). Raises TooFewPrimes.
+
+    largest : at most 2^27, so that a product of two residues is exact in doubles.
     """
 
-    def __init__(self, bits: int, largest: int, divisor: int = 2) -> None:
+    def __init__(self, bits: int, largest: int) -> None:
         # lazy: numba takes longer to import than all the rest
         from symfpu.algebra import kernels, rounding_loops
 
         self._kernels, self._loops = kernels, rounding_loops
-        self._largest, self._divisor = largest, divisor
+        self._largest = largest
         self.longest_word = -(
             -(bits + 2) // WORD_BITS
         )  # words that its integers have at most
         # an overflow of the promised bits by a factor of eight is still seen
-        self.primes = _primes(bits + 4, largest, divisor)
+        self.primes = _primes(bits + 4, largest)
         self.moduli = np.array(self.primes, dtype=np.float64)
         modulus = self.modulus = prod(self.primes)
         spare = modulus.bit_length() - bits - 1
@@ -147,7 +149,6 @@ class ResidueBasis:
         self._modulus_limbs = np.array(_limbs(modulus, count))[:, None]
         powers = [self._centred([2 ** (LIMB_BITS * n)] * len(self)) for n in range(count)]
         self._powers = np.stack(powers, axis=1)
-        self._fold = self._centred([2**LIMB_BITS] * len(self))
         self._turn = self._centred([2 ** (LIMB_BITS * count)] * len(self))
         self._rounding = Rounding(
             self.moduli,
@@ -156,14 +157,12 @@ class ResidueBasis:
             self._modulus_limbs[:, 0].copy(),
         )
         self._scales: dict[int, Scale] = {}
-        # whether sums over all primes of residues times limbs are exact in doubles
-        widest = self._widest = float(self.moduli.max(initial=0.0))
-        sums = len(self) * widest * LIMB / 4
-        self.small = sums <= EXACT and widest**2 / 4 <= EXACT
+        # limbs whose sums with residues are exact in doubles, beside one residue
+        self._exact_limbs = int(2 * EXACT / (self.primes[0] * LIMB)) - 1
 
     def beginning(self, bits: int) -> ResidueBasis:
         """The basis of the first of these primes, as many as integers of so many bits need."""
-        return ResidueBasis(bits, self._largest, self._divisor)
+        return ResidueBasis(bits, self._largest)
 
     def _centred(self, numbers: Sequence[int]) -> Floats:
         """One number for each prime, as residues in -p/2 .. p/2."""
@@ -180,14 +179,10 @@ class ResidueBasis:
         the promised bits.
         """
         self._kernels.multiply_rows(residues, self._inverses, self.moduli)
-        high = np.rint(residues / LIMB)
-        low = residues - high * LIMB
         share = (1 / self.moduli) @ residues
         turns = np.rint(share)
         self._check(float(np.abs(share - turns).max(initial=0.0)), self._limit)
-        limbs = self._cofactor_limbs @ low - self._modulus_limbs * turns
-        above = self._cofactor_limbs @ high
-        limbs[1:] += above[:-1]
+        limbs = self._cofactor_limbs @ residues - self._modulus_limbs * turns
         for n in range(len(limbs) - 1):
             carry = np.rint(limbs[n] / LIMB)
             limbs[n] -= carry * LIMB
@@ -247,39 +242,11 @@ class ResidueBasis:
         sizes: Floats | None,
     ) -> None:
         scale = self._scale(bits)
-        if not self.small:
-            own = residues[:, wanted]
-            if sizes is not None:
-                sizes[:] = 0.0
-                sizes[wanted] = self._sizes(own)
-            own = self._divided(own, scale)
-            residues[:] = 0.0
-            residues[:, wanted] = own
-            if words is not None:
-                found = words_of(first.limbs(own[: len(first)].copy()))
-                words[:, : found.shape[1]] = found
-            return
         farthest, farther = self._loops.round_columns(
             residues, wanted, self._rounding, LIMB, scale, first._rounding, words, sizes
         )
         self._check(farthest, self._limit)
         self._check(farther, first._limit)
-
-    def _sizes(self, residues: Floats) -> Floats:
-        """Moduli of integers over the product of all primes."""
-        shares = residues.copy()
-        self._kernels.multiply_rows(shares, self._inverses, self.moduli)
-        total = (1 / self.moduli) @ shares
-        return np.asarray(np.abs(total - np.rint(total)))
-
-    def _divided(self, residues: Floats, scale: Scale) -> Floats:
-        """Residues of the rounded integers, of primes of any size; overwrites them."""
-        limbs = self.limbs(residues.copy())[: scale.lowest.shape[1]]
-        limbs[-1] -= scale.top * np.rint(limbs[-1] / scale.top)
-        residues -= self.residues(limbs)
-        self._kernels.reduce_rows(residues, self.moduli)
-        self._kernels.multiply_rows(residues, scale.share, self.moduli)
-        return residues
 
     def _check(self, farthest: float, limit: float) -> None:
         """OverflowError where a sum of shares is too far from a whole number."""
@@ -288,31 +255,18 @@ class ResidueBasis:
 
     def residues(self, limbs: Floats) -> Floats:
         """Residues (primes, count) of the integers given by balanced limbs (limbs, count)."""
-        powers = self._powers[:, : len(limbs)]
-        if len(limbs) * self._widest * LIMB / 2 <= EXACT:
-            whole = np.asarray(powers @ limbs)
-            self._kernels.reduce_rows(whole, self.moduli)
-            return whole
-        high = np.rint(powers / LIMB)
-        low = powers - high * LIMB
-        top = high @ limbs
-        self._kernels.reduce_rows(top, self.moduli)
-        self._kernels.multiply_rows(top, self._fold, self.moduli)
-        top += low @ limbs
-        self._kernels.reduce_rows(top, self.moduli)
-        return np.asarray(top)
+        total = np.zeros((len(self), limbs.shape[1]))
+        for first in range(0, len(limbs), self._exact_limbs):
+            some = slice(first, first + self._exact_limbs)
+            total += self._powers[:, : len(limbs)][:, some] @ limbs[some]
+            self._kernels.reduce_rows(total, self.moduli)
+        return total
 
     def reduce(self, residues: Floats) -> None:
         """Integers (primes, ...) below 2^52 in size modulo each prime; overwritten."""
         flat = residues.reshape(len(self), -1)
         assert np.shares_memory(flat, residues) or not residues.size
         self._kernels.reduce_rows(flat, self.moduli)
-
-    def reduced(self, residues: Floats, i: int) -> Floats:
-        """Integers below 2^52 in size modulo the i-th prime; overwritten."""
-        flat = residues.reshape(1, -1)
-        self._kernels.reduce_rows(flat, self.moduli[i : i + 1])
-        return flat.reshape(residues.shape)
 
     def scale(self, residues: Floats, factors: Floats) -> None:
         """Multiply residues (primes, count), which are overwritten, by one number (primes,)."""
@@ -323,12 +277,7 @@ class ResidueBasis:
     ) -> None:
         """residues[:, n] *= factors[:, places[n]] where wanted; else zero. Of any shape."""
         some, at = wanted.ravel(), places.ravel()
-        if self.small:
-            self._kernels.multiply_places(residues, some, factors, at, self.moduli)
-            return
-        own = self._kernels.multiply_elements
-        for i, modulus in enumerate(self.moduli):
-            own(residues[i], np.where(some, factors[i, at], 0.0), modulus, residues[i])
+        self._kernels.multiply_places(residues, some, factors, at, self.moduli)
 
     def of_integers(self, integers: NDArray[np.object_]) -> Floats:
         """Residues (primes, ...) of Python's integers, of any size."""
@@ -413,21 +362,22 @@ def words_of(limbs: Floats) -> Words:
     return words
 
 
-def _primes(bits: int, largest: int, divisor: int) -> tuple[int, ...]:
-    """The largest primes up to `largest` whose product has more than `bits` bits.
+def _primes(bits: int, largest: int) -> tuple[int, ...]:
+    """The largest odd primes up to `largest` whose product has more than `bits` bits.
 
-    Those which a divisor, that is even, leaves one of.
+    No more than can be summed exactly in doubles, as residues times limbs.
     """
+    most = int(4 * EXACT / (largest * LIMB))
     primes: list[int] = []
-    candidate = largest - (largest - 1) % divisor
+    candidate = largest - (largest - 1) % 2
     product = 1
     while product.bit_length() <= bits:
-        if candidate < 2:
+        if candidate < 3 or len(primes) == most:
             raise TooFewPrimes(f"too few primes up to {largest} for {bits} bits")
         if flint.fmpz(candidate).is_prime():
             primes.append(candidate)
             product *= candidate
-        candidate -= divisor
+        candidate -= 2
     return tuple(primes)
 
 

@@ -22,7 +22,8 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Column, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
-from symfpu.numbers.typed import Number, decimal, exact, integer
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, decimal, double, exact, integer
 from symfpu.series.memory import series_bytes
 from symfpu.sweeps.rows import SweepRow, SweepRows
 from symfpu.sweeps.sweep import read_sweep, sweep
@@ -40,8 +41,8 @@ class AtlasBorder:
     energy : H there; None if there is none. details : its record.
 
     >>> chain = {"N": 8, "alpha": "0", "beta": "1"}
-    >>> AtlasBorder(chain, "low:1", (1,), 8, "poles", 1.02, {"mode": 5}).model
-    'beta=1'
+    >>> AtlasBorder(chain, "low:1", (1,), 8, "poles", 1.02, {"mode": 5})
+    AtlasBorder(N=8, beta=1, packet low:1, order 8: poles at H = 1.02)
     """
 
     chain: Json
@@ -51,6 +52,12 @@ class AtlasBorder:
     border: str
     energy: float | None
     details: Json = field(repr=False)
+
+    def __repr__(self) -> str:
+        place = f"at H = {self.energy:.6g}" if self.energy is not None else "nowhere"
+        why = f", {self.reason}" if self.reason else ""
+        case = f"N={self.N}, {self.model}, packet {self.packet}, order {self.order}"
+        return f"AtlasBorder({case}: {self.border} {place}{why})"
 
     @property
     def N(self) -> int:
@@ -75,6 +82,7 @@ class AtlasBorder:
         return str(found)
 
 
+@public
 @dataclass(frozen=True)
 class Atlas(Shown, Tabled):
     """Borders of q-tori by chain and packet. Made by `atlas` and `read_atlas`; ours.
@@ -85,12 +93,12 @@ class Atlas(Shown, Tabled):
     >>> from concurrent.futures import ThreadPoolExecutor
     >>> from symfpu import Chain, atlas
     >>> with ThreadPoolExecutor(1) as pool:
-    ...     found = atlas([Chain(4, beta=1)], ["low:1"], 6, borders=["ratio"], executor=pool)
+    ...     found = atlas([Chain(4, beta=1)], ["low:1"], 3, borders=["ratio"], executor=pool)
     >>> found
     Atlas(1 column, N = 4 .. 4, ... points, borders: 1 ratio)
     >>> found.to_frame()[["N", "packet", "border", "order"]]
        N packet border  order
-    0  4  low:1  ratio      6
+    0  4  low:1  ratio      3
     """
 
     rows: SweepRows = field(repr=False)
@@ -254,6 +262,7 @@ def _borders(rows: SweepRows) -> Iterator[AtlasBorder]:
             )
 
 
+@public
 def read_atlas(file: Path | str) -> Atlas:
     """The atlas in a file that `atlas` wrote; also while it is still written.
 
@@ -264,7 +273,7 @@ def read_atlas(file: Path | str) -> Atlas:
     >>> from symfpu import Chain, atlas
     >>> with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(1) as pool:
     ...     how = {"borders": ["ratio"], "executor": pool, "file": f"{folder}/atlas.jsonl"}
-    ...     found = atlas([Chain(4, beta=1)], ["low:1"], 4, **how)
+    ...     found = atlas([Chain(4, beta=1)], ["low:1"], 3, **how)
     ...     read_atlas(how["file"]) == found
     True
     """
@@ -276,6 +285,7 @@ def read_atlas(file: Path | str) -> Atlas:
     return Atlas(rows)
 
 
+@public
 def atlas(
     chains: Iterable[Chain | Mapping[str, Any]],
     packets: Iterable[str | Sequence[int]],
@@ -325,11 +335,11 @@ def atlas(
 
     >>> from concurrent.futures import ThreadPoolExecutor
     >>> from symfpu import Chain, atlas
-    >>> chains = [Chain(N, beta=1) for N in (8, 16, 32)]
+    >>> chains = [Chain(N, beta=1) for N in (6, 8, 12)]
     >>> with ThreadPoolExecutor(1) as pool:
-    ...     found = atlas(chains, ["high:1"], 6, borders=["poles"], executor=pool)
-    >>> round(found.law("high:1", "poles").exponent, 1)
-    -2.6
+    ...     found = atlas(chains, ["high:1"], 3, borders=["ratio"], executor=pool)
+    >>> round(found.law("high:1", "ratio").exponent, 1)
+    -2.2
     """
     shared = {
         "places": _places(places),
@@ -340,8 +350,9 @@ def atlas(
     }
     wanted = tuple(_one_of("borders", name, BORDERS) for name in borders)
     series = tuple(name for name in wanted if name in ESTIMATES)
+    of_orbits = {"time": last_time(time), "draws": integer(draws, "draws", 1)}
     if set(wanted) & set(OF_ORBITS):
-        shared |= {"time": last_time(time), "draws": integer(draws, "draws", 1)}
+        shared |= of_orbits
     orders = _orders(order)
     names = _packets(packets)
     cases = [
@@ -419,7 +430,7 @@ def _places(places: Sequence[Number]) -> tuple[str, ...]:
 
 
 def _reach(reach: float) -> float:
-    value = float(exact(reach, "reach"))
+    value = double(reach, "reach")
     if value < 1:
         raise InputError("reach", reach, "a number of at least 1", "take 3")
     return value

@@ -19,7 +19,11 @@ from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.tori import RefinedTorus, shifts_of
 
 MOST_UNKNOWNS = 4000  # of a dense matrix
-INVERSE_STEPS = 3  # from a random vector to the null vector
+INVERSE_STEPS = 100  # from a random vector to the null vector, at most
+SETTLED = (
+    1e-3  # change of that vector in a step, of its largest coefficient, that ends them
+)
+CLEAR = 0.9  # of the largest coefficient: where another one is as large, none is named
 
 Floats = NDArray[np.float64]
 
@@ -30,12 +34,13 @@ class Sheet:
 
     sign, logarithm : of its determinant divided by that of the linear chain at these frequencies,
         the product of the divisors; the sign changes where the series is singular.
-    mode, harmonic : the coefficient that moves most in its weakest direction.
+    mode, harmonic : the coefficient that moves most in its weakest direction; None and () where
+        no direction is the weakest, or no coefficient moves most.
     """
 
     sign: int
     logarithm: float
-    mode: int
+    mode: int | None
     harmonic: tuple[int, ...]
 
 
@@ -53,11 +58,13 @@ def sheet_of(torus: RefinedTorus) -> Sheet | None:
     matrix = np.diag(divisors) - equation.block(slopes, rows, columns)
     matrix /= divisors[:, None]
     sign, logarithm, weakest = _determinant(matrix)
+    if weakest is None:
+        return Sheet(sign, logarithm, None, ())
     harmonic = tuple(map(int, torus.harmonics[rows[weakest]]))
     return Sheet(sign, logarithm, int(columns[weakest]) + 1, harmonic)
 
 
-def _determinant(matrix: Floats) -> tuple[int, float, int]:
+def _determinant(matrix: Floats) -> tuple[int, float, int | None]:
     """Its sign, the logarithm of its size, and what is largest in the nearly null vector."""
     from scipy import linalg
 
@@ -66,10 +73,24 @@ def _determinant(matrix: Floats) -> tuple[int, float, int]:
         factors, pivots = linalg.lu_factor(matrix, check_finite=False)
     swaps = int((pivots != np.arange(len(pivots))).sum())
     negative = int((factors.diagonal() < 0).sum())
-    vector = np.random.default_rng(0).standard_normal(len(pivots))
-    for _ in range(INVERSE_STEPS):
-        vector = linalg.lu_solve((factors, pivots), vector, check_finite=False)
-        vector /= np.abs(vector).max()
     sign = -1 if (swaps + negative) % 2 else 1
     logarithm = float(np.log(np.abs(factors.diagonal())).sum())
-    return sign, logarithm, int(np.argmax(np.abs(vector)))
+    return sign, logarithm, _weakest((factors, pivots))
+
+
+def _weakest(factors: tuple[Floats, NDArray[np.intp]]) -> int | None:
+    """What is largest in the nearly null vector, None where that is not sure."""
+    from scipy import linalg
+
+    vector = np.random.default_rng(0).standard_normal(len(factors[1]))
+    for _ in range(INVERSE_STEPS):
+        before = vector
+        vector = linalg.lu_solve(factors, vector, check_finite=False)
+        vector = vector / vector[np.argmax(np.abs(vector))]
+        if float(np.max(np.abs(vector - before))) < SETTLED:
+            break
+    else:
+        return None
+    sizes = np.abs(vector)
+    largest = int(np.argmax(sizes))
+    return None if (np.delete(sizes, largest) > CLEAR).any() else largest

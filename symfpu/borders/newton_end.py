@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,11 @@ import numpy as np
 from symfpu.borders.fold import MOST_UNKNOWNS, sheet_of
 from symfpu.borders.last_torus import confirmation, vanishing_divisor
 from symfpu.borders.point import ENERGY, Ray
+from symfpu.breathers.balance import PeriodicOrbit, orbit_at
+from symfpu.breathers.equations import NoPeriodicOrbit
 from symfpu.breathers.floquet import floquet
+from symfpu.breathers.from_rest import FromRest
+from symfpu.breathers.passage import AmplitudeGoal, EnergyGoal, first_passage
 from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
 from symfpu.refinement.resonances import NearResonance
@@ -33,9 +37,10 @@ WIDE_FACTOR = 1.6  # and if none is
 LOSS_WIDTH = 1.01  # ratio of the places between which something is lost
 LEAST_FACTOR = 1.01  # a step below which the torus before is the last
 TOLERANCE = 1e-9  # of the residual, as of what `normal_modes` takes
+SAME_ORBIT = 1e-5  # of the size: what such a residual leaves open of an orbit
 CONFIRMING = 3  # times as many harmonics for the last torus as for those on the way
 Json = dict[str, Any]
-Test = Callable[[RefinedTorus], Json]
+Test = Callable[[RefinedTorus], Json | None]
 
 MOST_HARMONICS = 400
 NEWTON, FOLD, STABILITY = "newton", "fold", "stability"
@@ -166,22 +171,24 @@ def newton_end(
     points: list[RefinedPoint] = []
     lost: dict[str, Loss] = {}
     factor = FACTOR if losses else WIDE_FACTOR
-    for found in _followed(ray, guess, begin, end, most_harmonics, factor):
+    tori = _Tori(ray, one_family=bool(losses) and len(ray.seeds) == 1)
+    for found in _followed(tori, guess, begin, end, most_harmonics, factor):
         if isinstance(found, _Stop):
             stop = found
             break
         points.append(found)
         for name in losses:
             if name not in lost and (loss := _loss(name, points)):
-                lost[name] = _located(ray, TESTS[name], loss, most_harmonics)
-    confirmed = _confirmed(ray, points[-1], most_harmonics) if confirm else {}
+                loss = _located(tori, TESTS[name], loss, most_harmonics)
+                lost[name] = _named(loss) if name == FOLD else loss
+    confirmed = _confirmed(tori, points[-1], most_harmonics) if confirm else {}
     return NewtonEnd(stop.reason, stop.above, tuple(points), lost, confirmed)
 
 
-def _confirmed(ray: Ray, last: RefinedPoint, most: int) -> Json:
+def _confirmed(tori: _Tori, last: RefinedPoint, most: int) -> Json:
     def refined(sharper: float) -> RefinedTorus:
         tolerance = sharper * TOLERANCE
-        return _refined(ray, last.torus, last.place, CONFIRMING * most, tolerance)
+        return tori.refined(last.torus, last.place, CONFIRMING * most, tolerance)
 
     return confirmation(last.torus, refined)
 
@@ -197,13 +204,14 @@ def _loss(name: str, points: Sequence[RefinedPoint]) -> Loss | None:
         return None
     latest = points[-lasting:]
     changes = [TESTS[name](point.torus) for point in latest]
-    if not all(changes):
+    first = changes[0]
+    if first is None or None in changes:
         return None
     before = points[-lasting - 1] if len(points) > lasting else None
-    return Loss(before, latest[0], changes[0])
+    return Loss(before, latest[0], first)
 
 
-def _located(ray: Ray, test: Test, loss: Loss, most: int) -> Loss:
+def _located(tori: _Tori, test: Test, loss: Loss, most: int) -> Loss:
     """The same between nearer places, by halving, as far as tori are found."""
     below, above, found = loss.below, loss.above, loss.found
     if below is None:
@@ -211,38 +219,49 @@ def _located(ray: Ray, test: Test, loss: Loss, most: int) -> Loss:
     while above.place > LOSS_WIDTH * below.place:
         place = math.sqrt(below.place * above.place)
         try:
-            middle = RefinedPoint(place, _refined(ray, below.torus, place, most))
+            middle = RefinedPoint(place, tori.refined(below.torus, place, most))
         except NoTorus:
             break
-        if change := test(middle.torus):
-            above, found = middle, change
-        else:
+        change = test(middle.torus)
+        if change is None:
             below = middle
+        else:
+            above, found = middle, change
     return Loss(below, above, found)
 
 
-def _growth(torus: RefinedTorus) -> Json:
-    """The rate of the fastest normal mode; empty where none is unstable beyond doubt."""
+def _growth(torus: RefinedTorus) -> Json | None:
+    """The rate of the fastest normal mode; None where none is unstable beyond doubt."""
     if len(torus.seeds) == 1:
         found = floquet(torus)
         if found.stable:
-            return {}
+            return None
         period = 2 * math.pi / float(torus.frequencies[0])
         rate = math.log(np.abs(found.multipliers).max()) / period
         return {"growth": short(rate)}
     try:
         modes = normal_modes(torus)
     except NoNormalModes:
-        return {}
-    return {"growth": short(float(modes.growth))} if modes.stable is False else {}
+        return None
+    return {"growth": short(float(modes.growth))} if modes.stable is False else None
 
 
-def _other_sheet(torus: RefinedTorus) -> Json:
-    """The coefficient that folds, where the torus is not on the sheet of its series; else empty."""
+def _other_sheet(torus: RefinedTorus) -> Json | None:
+    """Nothing to say where the torus is not on the sheet of its series; None where it is."""
     sheet = sheet_of(torus)
-    if sheet is None or sheet.sign > 0:
-        return {}
-    return {"mode": sheet.mode, "harmonic": list(sheet.harmonic)}
+    return None if sheet is None or sheet.sign > 0 else {}
+
+
+def _named(fold: Loss) -> Loss:
+    """A fold with the coefficient that folds, where it is the same on both sides."""
+    if fold.below is None:
+        return fold
+    sheets = [sheet_of(point.torus) for point in (fold.below, fold.above)]
+    low, high = ((s.mode, list(s.harmonic)) if s else (None, []) for s in sheets)
+    mode, harmonic = high
+    if mode is None or low != high:
+        return fold
+    return replace(fold, found={"mode": mode, "harmonic": harmonic})
 
 
 TESTS: Mapping[str, Test] = {FOLD: _other_sheet, STABILITY: _growth}
@@ -257,7 +276,7 @@ class _Stop:
 
 
 def _followed(
-    ray: Ray,
+    tori: _Tori,
     guess: QuasiPeriodic,
     place: float,
     end: float,
@@ -265,13 +284,13 @@ def _followed(
     widest: float,
 ) -> Iterator[RefinedPoint | _Stop]:
     """The tori as they come, then why there is no further one."""
-    torus = _refined(ray, guess, place, most)
+    torus = tori.refined(guess, place, most)
     yield RefinedPoint(place, torus)
     factor = widest
     while place < end:
         following = min(place * factor, end)
         try:
-            found = _refined(ray, torus, following, most)
+            found = tori.refined(torus, following, most)
         except NoTorus as failure:
             if factor < LEAST_FACTOR:
                 yield _Stop(failure.reason, following)
@@ -288,35 +307,67 @@ def _followed(
     yield _Stop(NOT_FOLLOWED, math.inf)
 
 
-def _refined(
-    ray: Ray,
-    guess: QuasiPeriodic,
-    place: float,
-    most: int,
-    tolerance: float = TOLERANCE,
-) -> RefinedTorus:
-    """The torus of a place; NoTorus also where Newton's method ended early."""
-    found = _at(ray, guess, place, most, tolerance)
-    if ended_early(found):
-        raise NoTorus("; ".join(found.warnings), found, found.residual())
-    return found
+class _Tori:
+    """The tori of a ray, each near a guess.
 
+    one_family : of breathers, those of the family from rest, the first of every place: what they
+    lose is not told from a change of the family then.
+    """
 
-def _at(
-    ray: Ray, guess: QuasiPeriodic, place: float, most: int, tolerance: float
-) -> RefinedTorus:
-    name = f"{place:.8g}"
-    if ray.by == ENERGY:
-        return refine_at_energy(
-            guess,
-            name,
-            harmonic=False,
-            energy_ratio=dict.fromkeys(ray.seeds, 1),
-            tolerance=tolerance,
-            most_harmonics=most,
+    def __init__(self, ray: Ray, *, one_family: bool) -> None:
+        self.ray = ray
+        self._walk = FromRest(ray.chain, *ray.seeds) if one_family else None
+
+    def refined(
+        self, guess: QuasiPeriodic, place: float, most: int, tolerance: float = TOLERANCE
+    ) -> RefinedTorus:
+        """The torus of a place; NoTorus also where Newton's method ended early."""
+        orbit = None if self._walk is None else self._on_family(self._walk, guess, place)
+        found = self._at(orbit or guess, place, most, tolerance)
+        if ended_early(found):
+            raise NoTorus("; ".join(found.warnings), found, found.residual())
+        if orbit is not None:
+            _require_same(orbit, found)
+        return found
+
+    def _on_family(
+        self, walk: FromRest, guess: QuasiPeriodic, place: float
+    ) -> PeriodicOrbit:
+        value = float(f"{place:.8g}")
+        energy = EnergyGoal(self.ray.chain, value)
+        goal = energy if self.ray.by == ENERGY else AmplitudeGoal(value)
+        try:
+            return orbit_at(first_passage(walk, goal), 0)
+        except NoPeriodicOrbit as failure:
+            raise NoTorus(failure.reason, guess, guess.residual()) from failure
+
+    def _at(
+        self, guess: QuasiPeriodic, place: float, most: int, tolerance: float
+    ) -> RefinedTorus:
+        name, seeds = f"{place:.8g}", self.ray.seeds
+        if self.ray.by == ENERGY:
+            return refine_at_energy(
+                guess,
+                name,
+                harmonic=False,
+                energy_ratio=dict.fromkeys(seeds, 1),
+                tolerance=tolerance,
+                most_harmonics=most,
+            )
+        amplitudes = dict.fromkeys(seeds, name)
+        return refine_at_amplitudes(
+            guess, amplitudes, tolerance=tolerance, most_harmonics=most
         )
-    amplitudes = dict.fromkeys(ray.seeds, name)
-    return refine_at_amplitudes(guess, amplitudes, tolerance=tolerance, most_harmonics=most)
+
+
+def _require_same(orbit: PeriodicOrbit, found: RefinedTorus) -> None:
+    """NoTorus where Newton's method on tori leads from an orbit to another one."""
+    other = found.by_harmonic().astype(float)
+    length = min(len(other), len(orbit.cosines))
+    size = float(np.abs(orbit.cosines).max())
+    change = float(np.abs(other[:length] - orbit.cosines[:length]).max()) / size
+    if change > SAME_ORBIT:
+        raise NoTorus("Newton's method leads to another orbit", found, found.residual())
 
 
 def _slopes(points: tuple[RefinedPoint, ...]) -> list[float]:

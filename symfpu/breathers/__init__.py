@@ -1,1 +1,1 @@
-"""Periodic orbits: harmonic balance, many digits, shooting, Floquet multipliers."""
+"""Periodic orbits: harmonic balance, many digits, Floquet multipliers."""

@@ -1,39 +1,37 @@
-"""The q-breather of a prescribed energy: harmonic balance bordered by the energy.
-
-The family is followed from rest, in growing steps of the energy.
-"""
+"""The q-breather of a prescribed energy: harmonic balance bordered by the energy."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from fractions import Fraction
+import itertools
+import warnings
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.balance import (
     ONE_SEED,
-    REACH,
-    Balance,
-    Condition,
-    NoPeriodicOrbit,
     PeriodicOrbit,
     as_periodic_orbit,
+    orbit_at,
     orbit_near,
 )
+from symfpu.breathers.equations import Balance, Condition, NoPeriodicOrbit
+from symfpu.breathers.from_rest import FromRest
+from symfpu.breathers.passage import EnergyGoal, first_passage
 from symfpu.chain.chain import Chain, require_chain
-from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, SymfpuError
-from symfpu.numbers.typed import Number, exact, seed_modes
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, energy_of, seed_modes
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Floats = NDArray[np.float64]
 
-LARGEST_GROWTH = 4.0  # of the energy from one member to the next
-SMALLEST_GROWTH = 1e-2  # relative; below it the family counts as ended
-SMALLEST_START = (
-    1e-12  # of the energy asked for: the least at which a first member is looked for
-)
+# change of a coefficient from a guess to its orbit, relative to the largest, that is near
+REACH = 0.3
+# points of the walk beyond the orbit, and the energy relative to its own, up to which another one
+# is looked for
+MORE_POINTS, MORE_ENERGY = 20, 1.5
 
 
 class NoBreatherAtEnergy(SymfpuError):
@@ -106,6 +104,7 @@ class Level:
         return float(energy), -self.chain.accelerations(Q)
 
 
+@public
 def breather_at_energy(
     chain: Chain,
     seed: int,
@@ -124,7 +123,10 @@ def breather_at_energy(
         rest, with A > 0.
 
     Harmonic balance, as `periodic_orbit`; the breathers of section 6.4 by their energy, where the
-    paper gives frequencies.
+    paper gives frequencies. An energy may have several orbits. Without a guess this is the first
+    one on the family from rest, which is followed in steps that do not depend on the energy. Where
+    a wide gap has turned the family, it is followed a little further, and a UserWarning says
+    that the energy is passed again.
     Raises InputError; NoBreatherAtEnergy if the family from rest ends before; with a guess
     NoPeriodicOrbit.
 
@@ -133,7 +135,7 @@ def breather_at_energy(
     (1.883074184707, 0.00465)
     """
     require_chain(chain)
-    (seed,), target = seed_modes((seed,), chain.N), _positive(energy)
+    (seed,), target = seed_modes((seed,), chain.N), energy_of(energy)
     if not isinstance(harmonic, bool):
         advice = "say whether energy means sum E_q at t = 0"
         raise InputError("harmonic", harmonic, "True or False", advice)
@@ -142,35 +144,40 @@ def breather_at_energy(
         member = _member(guess, chain, seed)
         level = Level(chain, goal, harmonic)
         return orbit_near(chain, seed, member.cosines, member.sigma, level, REACH)
-    members: list[tuple[float, PeriodicOrbit]] = []
-    aim, growth, iterations = goal, LARGEST_GROWTH, 0
-    while True:
-        try:
-            orbit = _next(chain, seed, aim, harmonic, members[-2:])
-        except NoPeriodicOrbit as failure:
-            if not members:
-                aim /= LARGEST_GROWTH
-                if aim > SMALLEST_START * goal:
-                    continue
-            elif growth - 1 > SMALLEST_GROWTH:
-                growth = growth**0.5
-                aim = min(goal, members[-1][0] * growth)
-                continue
-            last = members[-1][1] if members else None
-            raise NoBreatherAtEnergy(seed, goal, harmonic, last, failure) from failure
-        iterations += orbit.iterations
-        if aim == goal:
-            return replace(orbit, iterations=iterations)
-        members.append((aim, orbit))
-        growth = min(LARGEST_GROWTH, growth**1.5)
-        aim = min(goal, aim * growth)
+    aim, walk = EnergyGoal(chain, goal, harmonic), None
+    try:
+        walk = FromRest(chain, seed)
+        orbit = orbit_at(first_passage(walk, aim), walk.iterations)
+    except NoPeriodicOrbit as failure:
+        last = _highest(walk, aim) if walk else None
+        raise NoBreatherAtEnergy(seed, goal, harmonic, last, failure) from failure
+    again = _passed_again(walk, aim) if walk.turned else None
+    if again is not None:
+        first = f"A = {orbit.amplitude:.6g} is the first orbit of this energy"
+        later = f"the family from rest passes it again near A = {again:.6g}"
+        warnings.warn(f"{first}, {later}: give a guess for others", stacklevel=3)
+    return orbit
 
 
-def _positive(energy: Number) -> Fraction:
-    target = exact(energy, "energy")
-    if target <= 0:
-        raise InputError("energy", energy, "a positive number", "take a small one")
-    return target
+def _passed_again(walk: FromRest, aim: EnergyGoal) -> float | None:
+    """A where the energy has fallen below the goal again, soon after the walk has passed it."""
+    so_far = len(walk.points) - 1
+    try:
+        for point in itertools.islice(walk, so_far, so_far + MORE_POINTS):
+            energy = aim.value(point.balance, point.z)
+            if energy < aim.target:
+                return point.amplitude
+            if energy > MORE_ENERGY * aim.target:
+                return None
+    except NoPeriodicOrbit:
+        return None
+    return None
+
+
+def _highest(walk: FromRest, aim: EnergyGoal) -> PeriodicOrbit:
+    """The orbit of a walk with the largest energy."""
+    highest = max(walk.points, key=lambda point: aim.value(point.balance, point.z))
+    return orbit_at(highest, walk.iterations)
 
 
 def _member(guess: object, chain: Chain, seed: int) -> PeriodicOrbit:
@@ -186,49 +193,3 @@ def _member(guess: object, chain: Chain, seed: int) -> PeriodicOrbit:
 def _energy(member: PeriodicOrbit, harmonic: bool) -> float:
     """H, or the harmonic energy sum E_q, at t = 0."""
     return float(member.harmonic_energies().sum() if harmonic else member.energy())
-
-
-def _next(
-    chain: Chain,
-    seed: int,
-    energy: float,
-    harmonic: bool,
-    members: list[tuple[float, PeriodicOrbit]],
-) -> PeriodicOrbit:
-    """The member at an energy near those of the last two, or near the linear mode."""
-    level = Level(chain, energy, harmonic)
-    if not members:
-        cosines, sigma = _linear_guess(chain, seed, energy)
-    elif len(members) == 1:
-        [(last, member)] = members
-        ratio = energy / last
-        cosines, sigma = member.cosines * ratio**0.5, member.sigma * ratio
-    else:
-        cosines, sigma = _secant_guess(members, energy)
-    return orbit_near(chain, seed, cosines, sigma, level, REACH)
-
-
-def _linear_guess(chain: Chain, seed: int, energy: float) -> tuple[Floats, float]:
-    """Cosines and sigma of the linear mode of this energy, with the lowest shift."""
-    linear = float(chain.frequencies()[seed - 1])
-    amplitude = (2 * energy) ** 0.5 / linear
-    cosines = np.zeros((2, chain.N - 1))
-    cosines[1, seed - 1] = amplitude
-    shift = frequency_shift(chain, {seed: amplitude})[seed]
-    return cosines, shift * (2 * linear + shift)
-
-
-def _secant_guess(
-    members: list[tuple[float, PeriodicOrbit]], energy: float
-) -> tuple[Floats, float]:
-    """Cosines on the secant in the square root of the energy, sigma on that in the energy."""
-    (first, before), (last, member) = members
-    weight = (energy**0.5 - last**0.5) / (last**0.5 - first**0.5)
-    length = max(len(before.cosines), len(member.cosines))
-    old = np.zeros((length, before.cosines.shape[1]))
-    new = old.copy()
-    old[: len(before.cosines)] = before.cosines
-    new[: len(member.cosines)] = member.cosines
-    slope = (energy - last) / (last - first)
-    sigma = member.sigma + slope * (member.sigma - before.sigma)
-    return new + weight * (new - old), sigma

@@ -26,9 +26,9 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import decimal
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 Floats = NDArray[np.float64]
 MORE_ANGLES = (
@@ -74,7 +74,7 @@ class Floquet(Shown, Gridded):
     2     2  on the circle
     """
 
-    orbit: QuasiPeriodic | RingTorus
+    orbit: QuasiPeriodic
     pairs: NDArray[np.complex128] = field(repr=False)
     kinds: tuple[str, ...]
     kappa: NDArray[np.complex128] = field(repr=False)
@@ -150,7 +150,7 @@ class Floquet(Shown, Gridded):
         )
 
 
-def monodromy(orbit: QuasiPeriodic | RingTorus, *, scheme: str = "kahan_li8") -> Floats:
+def monodromy(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floats:
     """Tangent map over one period in mode coordinates and momenta, from a state at rest.
 
     scheme : of the integrator, on T + V. Returns shape (2(N-1), 2(N-1)). Raises InputError.
@@ -160,7 +160,8 @@ def monodromy(orbit: QuasiPeriodic | RingTorus, *, scheme: str = "kahan_li8") ->
     return _in_modes(path, _whole(half))
 
 
-def floquet(orbit: QuasiPeriodic | RingTorus, *, scheme: str = "kahan_li8") -> Floquet:
+@public
+def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
     orbit : a solution of one angle, from `periodic_orbit`, `refine` or others, on a ring from
@@ -170,8 +171,8 @@ def floquet(orbit: QuasiPeriodic | RingTorus, *, scheme: str = "kahan_li8") -> F
 
     The linearised equations of motion (of Eq. eqmo) over half a period, by the symmetry in time;
     ours. A kappa counts as on the circle if it is real and in -1 .. 0 up to `tolerance`, which is
-    SAFETY times its error to first order: the error of B^T C over the cosine between its left and
-    right eigenvector. Raises InputError.
+    SAFETY times its error to first order. Of eigenvectors l and r that is the error of the map
+    times |B l| + |C r|, over |l . r|: next to the trivial pair both are small. Raises InputError.
 
     >>> from symfpu.chain.chain import Chain
     >>> from symfpu.breathers.balance import breather_at_amplitude
@@ -188,11 +189,16 @@ def floquet(orbit: QuasiPeriodic | RingTorus, *, scheme: str = "kahan_li8") -> F
     _, _, basis = np.linalg.svd(path.flow[None, :])
     flow, rest = basis.T[:, 0], basis.T[:, 1:]
     trivial = float(np.linalg.norm(C.T @ (B @ flow)))
-    sizes = float(np.linalg.norm(B, 2) + np.linalg.norm(C, 2))
-    error = map_error * sizes + trivial
+    sizes = [float(np.linalg.norm(block, 2)) for block in (B, C)]
+    error = map_error * sum(sizes) + trivial
     kappa, left, right = eig(rest.T @ B.T @ C @ rest, left=True)
+    tilts = np.linalg.norm(B @ rest @ left, axis=0) + np.linalg.norm(
+        C @ rest @ right, axis=0
+    )
+    rounding = float(np.finfo(float).eps) * sizes[0] * sizes[1]
+    errors = map_error * tilts + trivial + rounding
     cosines = np.abs(np.einsum("ij,ij->j", left.conj(), right))
-    tolerance = SAFETY * error / np.maximum(cosines, np.finfo(float).tiny)
+    tolerance = SAFETY * errors / np.maximum(cosines, np.finfo(float).tiny)
     kinds = [_kind(k, t) for k, t in zip(kappa, tolerance, strict=True)]
     pairs = np.array(
         [_pair(k, kind) for k, kind in zip(kappa, kinds, strict=True)]

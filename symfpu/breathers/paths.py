@@ -20,7 +20,7 @@ from symfpu.breathers.balance import ONE_ANGLE, PeriodicOrbit, as_periodic_orbit
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.tangent import real_waves
 from symfpu.errors import InputError
-from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 
 Floats = NDArray[np.float64]
 
@@ -47,12 +47,13 @@ def path_of(solution: object, argument: str, advice: str) -> PeriodicPath:
 
     advice : what to do with a torus of more angles.
     """
-    if not isinstance(solution, RingTorus):
-        return _of_cosines(as_periodic_orbit(solution, argument, advice))
-    if len(solution.seeds) > 1:
-        given = f"a torus of {len(solution.seeds)} angles"
+    orbit = require_solution(solution, argument)
+    if not orbit.chain.periodic:
+        return _of_cosines(as_periodic_orbit(orbit, argument, advice))
+    if len(orbit.seeds) > 1:
+        given = f"a torus of {len(orbit.seeds)} angles"
         raise InputError(argument, given, ONE_ANGLE, advice)
-    return _of_waves(solution)
+    return _of_waves(orbit.in_doubles())
 
 
 def _of_cosines(orbit: PeriodicOrbit) -> PeriodicPath:
@@ -64,16 +65,16 @@ def _of_cosines(orbit: PeriodicOrbit) -> PeriodicPath:
         angles = np.multiply.outer(t, rates)
         return np.asarray(np.cos(angles) @ coefficients)
 
-    force = chain.accelerations(orbit.positions(0.0))
+    force = chain.accelerations(orbit.Q(0.0))
     return PeriodicPath(chain, omega, stretches, len(coefficients), force, None)
 
 
-def _of_waves(torus: RingTorus) -> PeriodicPath:
+def _of_waves(torus: QuasiPeriodic) -> PeriodicPath:
     chain, (q,) = torus.chain, torus.seeds
-    wave = replace(torus, phases={q: 0.0})
+    wave = replace(torus.in_doubles(), phases={q: 0.0})
 
     def stretches(t: Floats) -> Floats:
-        return chain.stretches(wave.mode_coordinates(t))
+        return chain.stretches(wave.Q(t))
 
     Q, P = wave.state()
     waves, frame = real_waves(chain), reversal_frame(chain)

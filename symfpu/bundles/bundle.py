@@ -30,16 +30,6 @@ from symfpu.bundles.entries import (
     number_entry,
 )
 from symfpu.bundles.refined import refined_entries, refined_from
-from symfpu.bundles.rings import (
-    REFINED_WAVES,
-    TRAVELLING,
-    WAVES,
-    refined_waves_from,
-    ring_torus_entries,
-    ring_torus_from,
-    travelling_entries,
-    travelling_from,
-)
 from symfpu.bundles.series import series_entries, series_from, series_tables
 from symfpu.bundles.solutions import FOURIER, solution_entries, solution_from
 from symfpu.errors import InputError
@@ -47,6 +37,7 @@ from symfpu.files.archive import (
     DAMAGE,
     MEMORY_ADVICE,
     SAVED_ADVICE,
+    SCHEMA,
     Archive,
     BundleError,
     Json,
@@ -54,14 +45,13 @@ from symfpu.files.archive import (
 )
 from symfpu.files.checkpoint import KINDS
 from symfpu.files.formats import ARCHIVE, BUNDLE, format_of, opened_by
+from symfpu.files.writing import open_to_read
 from symfpu.frames.recorded import Recorded
 from symfpu.numbers.arithmetic import text
-from symfpu.numbers.typed import integer
+from symfpu.numbers.typed import integer, order_of
 from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.series.series import LindstedtSeries
-from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
-from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus, RootCertificate
 
 Array = NDArray[Any]
@@ -77,17 +67,13 @@ PACKAGES = (
     "numba",
     "llvmlite",
 )
-# schemas that began with these
-SOLUTIONS, POTENTIALS, PROGRAMS, RINGS_OF_PARTICLES = 2, 3, 4, 5
 REFINED_KIND = "refined"  # kind of a torus without a series
-READERS: dict[str, Callable[[Archive, Json], QuasiPeriodic | RingTorus]] = {
+READERS: dict[str, Callable[[Archive, Json], QuasiPeriodic]] = {
     REFINED_KIND: refined_from,
     FOURIER: solution_from,
-    WAVES: ring_torus_from,
-    REFINED_WAVES: refined_waves_from,
 }
-SERIES: tuple[type[Any], ...] = LindstedtSeries, TravellingSeries
-Result: TypeAlias = LindstedtSeries | TravellingSeries | QuasiPeriodic | RingTorus
+FORMER = ("waves", "refined waves", "precise waves")  # kinds that tori of rings once had
+Result: TypeAlias = LindstedtSeries | QuasiPeriodic
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
 
@@ -95,8 +81,7 @@ LONG_RUN = 100  # periods of the slowest seed at which the last test vector is t
 class OrbitPoint(NamedTuple):
     """A point of the torus for tests of other programs, as decimals.
 
-    t : the time. Q, P : Q_1 .. Q_(N-1) and P_1 .. P_(N-1) at t; of a ring displacements and momenta
-    of its N particles.
+    t : the time. Q, P : mode coordinates and momenta at t, (N-1,); on a ring complex.
     """
 
     t: str
@@ -125,8 +110,8 @@ class Bundle(Recorded):
     Bundle(LindstedtSeries(N=8, beta=0.1, ...), no torus, no verdict, saved ... by symfpu ...)
     """
 
-    series: LindstedtSeries | TravellingSeries | None
-    torus: QuasiPeriodic | RingTorus | None
+    series: LindstedtSeries | None
+    torus: QuasiPeriodic | None
     verdict: Json | None
     provenance: Json
     test_vectors: tuple[OrbitPoint, ...] = field(repr=False, default=())
@@ -179,27 +164,25 @@ def save(
     (3,)
     """
     path = named_path(path)
-    if not isinstance(result, (*SERIES, RingTorus)):
+    if not isinstance(result, LindstedtSeries):
         require_solution(result, "result")
     require_notes(verdict, command, created)
     parts, members = parts_of(result)
     points: list[OrbitPoint] = []
-    if not isinstance(result, LindstedtSeries | TravellingSeries):
+    if not isinstance(result, LindstedtSeries):
         points = _test_vectors(result)
-    known = document(_schema(result), verdict, command, created)
+    known = document(verdict, command, created)
     vectors = [point._asdict() for point in points]
     write_document(path, known | parts | {"test_vectors": vectors}, members)
     return path
 
 
-def document(
-    schema: int, verdict: Json | None, command: str | None, created: datetime | None
-) -> Json:
+def document(verdict: Json | None, command: str | None, created: datetime | None) -> Json:
     """What every file begins with; without a series, a torus and test vectors yet."""
     moment = (created or datetime.now(UTC)).astimezone(UTC)
     return {
         "format": BUNDLE,
-        "schema": schema,
+        "schema": SCHEMA,
         "created": moment.isoformat(timespec="seconds"),
         "command": command,
         "versions": _versions(),
@@ -212,12 +195,6 @@ def document(
 
 def parts_of(result: Result) -> tuple[Json, dict[str, Array]]:
     """The entries of series and torus, and their arrays."""
-    if isinstance(result, TravellingSeries):
-        entries, members = travelling_entries(result)
-        return {"series": entries, "torus": None}, members
-    if isinstance(result, RingTorus):
-        entries, members = ring_torus_entries(result)
-        return {"series": None, "torus": entries}, members
     if isinstance(result, RefinedTorus):
         entries, members = refined_entries(result)
         return {"series": None, "torus": entries | {"kind": REFINED_KIND}}, members
@@ -230,17 +207,6 @@ def parts_of(result: Result) -> tuple[Json, dict[str, Array]]:
     return {"series": series_entries(series) | layout, "torus": torus}, members
 
 
-def _schema(result: Result) -> int:
-    """The least that a reader has to know: what the first version wrote, it still reads."""
-    if isinstance(result, LindstedtSeries) and result.symbolic:
-        return PROGRAMS
-    if result.chain.periodic:
-        return RINGS_OF_PARTICLES
-    if not result.chain.fpu:
-        return POTENTIALS
-    return 1 if isinstance(result, (LindstedtSeries, QTorus, RefinedTorus)) else SOLUTIONS
-
-
 def load(path: Path | str) -> Bundle:
     """The series and the torus that `save` wrote, exactly as they were.
 
@@ -248,8 +214,8 @@ def load(path: Path | str) -> Bundle:
 
     path : of the file. Everything in it is dimensionless but for the date. The format is ours.
 
-    Raises BundleError for a file that is damaged, foreign, newer than this symfpu or too large
-    for the free memory; OSError for one that is missing or not to be read.
+    Raises BundleError for a file that is damaged, foreign, of another schema than this symfpu
+    writes, or too large for the free memory; OSError for one that is missing or not to be read.
 
     >>> import tempfile
     >>> from symfpu import Chain, lindstedt
@@ -270,7 +236,7 @@ def _no_solution(archive: Archive, body: Json) -> Any:
 def load_with(path: Path | str, other: Callable[[Archive, Json], Any]) -> Bundle:
     """As `load`; other : makes the result of a file with neither a series nor a solution."""
     path = named_path(path)
-    with path.open("rb") as stream:
+    with open_to_read(path, "path") as stream:
         if stream.read(len(ARCHIVE)) != ARCHIVE:
             raise _foreign(path)
         try:
@@ -342,11 +308,6 @@ def _by_seed(entries: Mapping[str, Any], seeds: Sequence[int]) -> dict[int, Any]
     return values
 
 
-def _any_series(archive: Archive, body: Json) -> LindstedtSeries | TravellingSeries:
-    of_waves = body["ring"] == TRAVELLING
-    return travelling_from(archive, body) if of_waves else series_from(archive, body)
-
-
 def _torus_entries(torus: QTorus) -> Json:
     history = {str(K): [number_entry(a) for a in row] for K, row in torus.history.items()}
     proof = torus.certificate
@@ -368,7 +329,7 @@ def _entries_by_seed(values: Mapping[int, Any]) -> Json:
 
 
 def _torus(body: Json, series: LindstedtSeries) -> QTorus:
-    order = integer(body["order"], "order", 0)
+    order = order_of(body["order"])
     frequency_order = integer(body["frequency_order"], "frequency_order", 0)
     if max(order, frequency_order) > series.order or series.frequencies is None:
         orders = f"order {order} and frequency order {frequency_order}"
@@ -393,17 +354,17 @@ def _certificate(proof: Json, seeds: tuple[int, ...]) -> RootCertificate:
     return RootCertificate(proof["certified"] is True, radius, str(proof["reason"]))
 
 
-def _test_vectors(torus: QuasiPeriodic | RingTorus) -> list[OrbitPoint]:
+def _test_vectors(torus: QuasiPeriodic) -> list[OrbitPoint]:
     """The torus at the start, after a period of the slowest seed, about, and after many."""
     period = 2 * pi / float(min(torus.frequencies))
     times = [0.0, float(f"{period:.4g}"), float(f"{LONG_RUN * period:.4g}")]
 
     def written(values: Array) -> tuple[str, ...]:
         if torus.digits is None:
-            return tuple(repr(float(x)) for x in values)
+            return tuple(map(repr, values.tolist()))
         return tuple(text(x, torus.digits) for x in values)
 
-    states = zip(times, torus.positions(times), torus.momenta(times), strict=True)
+    states = zip(times, torus.Q(times), torus.P(times), strict=True)
     return [OrbitPoint(repr(t), written(Q), written(P)) for t, Q, P in states]
 
 
@@ -430,7 +391,7 @@ def _bundle(path: Path, archive: Archive, other: Callable[[Archive, Json], Any])
 
 def _held(archive: Archive, body: Json) -> tuple[Any, Any]:
     """The series and the solution of the entries that `parts_of` makes, or None."""
-    series = None if body["series"] is None else _any_series(archive, body["series"])
+    series = None if body["series"] is None else series_from(archive, body["series"])
     return series, _solution(archive, body["torus"], series)
 
 
@@ -446,14 +407,13 @@ def _orbit_point(entry: Json) -> OrbitPoint:
 
 
 def _solution(
-    archive: Archive, body: Json | None, series: LindstedtSeries | TravellingSeries | None
-) -> QuasiPeriodic | RingTorus | None:
-    if isinstance(series, TravellingSeries):
-        if body is not None:
-            raise ValueError("a torus beside a series of waves")
-        return None
+    archive: Archive, body: Json | None, series: LindstedtSeries | None
+) -> QuasiPeriodic | None:
     if series is not None:
         return None if body is None else _torus(body, series)
+    if body is not None and body["kind"] in FORMER:
+        problem = "holds waves of a ring in a format before that of all solutions"
+        raise BundleError(archive.path, problem, "make it again")
     if body is None or body["kind"] not in READERS:
         kind = None if body is None else body["kind"]
         raise ValueError(f"a torus of kind {kind!r:.40} without a series")

@@ -9,6 +9,7 @@ import mpmath
 from mpmath import libmp
 
 from symfpu.chain.chain import Chain
+from symfpu.chain.ends import ENDS
 from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.errors import InputError
@@ -25,6 +26,21 @@ class UnknownPotential(ValueError):
 
     def __init__(self, written: str) -> None:
         super().__init__(f"holds a chain of the potential {written!r:.60}")
+
+
+def travelling_entry(torus: Any) -> Json:
+    """Whether waves of a ring travel, for tori of a ring."""
+    return {"travels": torus.travels} if torus.chain.periodic else {}
+
+
+def travels_from(body: Json) -> bool:
+    """The same of entries; ValueError for what does not say it."""
+    if body.get("ends", FIXED) == FIXED:
+        return False
+    if not isinstance(body["travels"], bool):
+        raise ValueError("waves that neither travel nor stand")
+    travels: bool = body["travels"]
+    return travels
 
 
 def number_entry(value: Any) -> str | dict[str, str]:
@@ -91,7 +107,7 @@ def chain_from(body: Json, ends: str = FIXED) -> Chain:
     ends : those that it must have; ValueError for others.
     """
     N = SYMBOL if body["N"] == SYMBOL else integer(body["N"], "N", 2)
-    if body.get("ends", FIXED) != ends:
+    if body.get("ends", FIXED) != ends or ends not in ENDS:
         raise ValueError(f"a chain with {body.get('ends')!r:.40} ends, not {ends}")
     if "potential" not in body:
         couplings = fraction(body["alpha"]), fraction(body["beta"])

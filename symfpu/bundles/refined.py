@@ -8,13 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.bundles.entries import chain_entries, chain_from
+from symfpu.bundles.entries import (
+    FIXED,
+    chain_entries,
+    chain_from,
+    travelling_entry,
+    travels_from,
+)
 from symfpu.files.archive import Archive, Json
-from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
+from symfpu.numbers.typed import fraction, fraction_text, integer
 from symfpu.refinement.newton import NewtonStep
 from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.refinement.resonances import NearResonance
-from symfpu.refinement.ring_tori import RefinedRingTorus
+from symfpu.tori.columns import columns_of
 
 Array = NDArray[Any]
 FLOATS, INTEGERS = "<f8", "<i8"
@@ -32,6 +38,7 @@ def refined_entries(torus: RefinedTorus) -> tuple[Json, dict[str, Array]]:
         "amplitudes": [repr(a) for a in torus.amplitudes.values()],
         "phases": [repr(phi) for phi in torus.phases.values()],
         "harmonics": len(torus.harmonics),
+        **travelling_entry(torus),
         **newton_entries(torus),
         "warnings": list(torus.warnings),
     }
@@ -42,8 +49,10 @@ def refined_entries(torus: RefinedTorus) -> tuple[Json, dict[str, Array]]:
 
 def refined_from(archive: Archive, body: Json) -> RefinedTorus:
     """The torus of such entries; ValueError where they do not fit together."""
-    chain = chain_from(body)
-    seeds = seed_modes(body["seeds"], chain.N)
+    chain, travels = chain_from(body, body.get("ends", FIXED)), travels_from(body)
+    if chain.periodic and not travels:
+        raise ValueError("standing waves by Newton's method")
+    seeds = chain.seeds_of(body["seeds"])
     count = integer(body["harmonics"], "harmonics", 1)
     s = len(seeds)
     lengths = {name: len(body[name]) for name in ("frequencies", "amplitudes", "phases")}
@@ -52,8 +61,9 @@ def refined_from(archive: Archive, body: Json) -> RefinedTorus:
     frequencies = tuple(fraction(w) for w in body["frequencies"])
     flat = np.asarray(archive.array("harmonics", INTEGERS, count * s))
     harmonics = flat.reshape(count, s).astype(np.int64)
-    flat = np.asarray(archive.array("cosines", FLOATS, count * (chain.N - 1)))
-    cosines = flat.reshape(count, chain.N - 1)
+    columns = columns_of(chain, seeds, harmonics, travels=travels).count
+    flat = np.asarray(archive.array("cosines", FLOATS, count * columns))
+    cosines = flat.reshape(count, columns)
     if min(frequencies) <= 0 or not np.isfinite(cosines).all():
         wrong = (
             "a frequency that is not positive, or a coefficient that is no finite number"
@@ -72,6 +82,7 @@ def refined_from(archive: Archive, body: Json) -> RefinedTorus:
         cosines=cosines,
         **newton_from(body),
         warnings=tuple(map(str, body["warnings"])),
+        travels=travels,
     )
 
 
@@ -79,7 +90,7 @@ def _by_seed(seeds: Sequence[int], entries: Sequence[str]) -> dict[int, float]:
     return {q: float(entry) for q, entry in zip(seeds, entries, strict=True)}
 
 
-def newton_entries(torus: RefinedTorus | RefinedRingTorus) -> Json:
+def newton_entries(torus: RefinedTorus) -> Json:
     """Steps and small divisors."""
     near = [_near_resonance_entry(resonance) for resonance in torus.near_resonances]
     return {"steps": [_step_entry(step) for step in torus.steps], "near_resonances": near}

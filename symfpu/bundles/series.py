@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.grading import canonical_count
 from symfpu.bundles.entries import (
+    FIXED,
     chain_entries,
     chain_from,
 )
@@ -21,21 +22,23 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.length import label_entry, seed_labels
 from symfpu.files.archive import (
     Archive,
+    BundleError,
     Json,
 )
-from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
+from symfpu.numbers.typed import fraction, fraction_text, integer, order_of
 from symfpu.series.all_lengths import SeriesForAllN, ends_reached, in_order
 from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.divisors import SmallDivisor
 from symfpu.series.lindstedt import UNIVERSAL
 from symfpu.series.monomials import shared_grading
-from symfpu.series.rings import FIXED_POINT, RINGS, RingKind
+from symfpu.series.rings import FIXED_POINT, FLOAT64, RINGS, RingKind
 from symfpu.series.series import LindstedtSeries
 from symfpu.series.tables import Shapes
 
 Array = NDArray[Any]
 Labels = tuple[int, ...]  # of seeds
 RADII = "<f8"
+OF_WAVES = "travelling"  # the ring that series of waves once had in files
 
 
 def series_tables(series: LindstedtSeries) -> tuple[dict[str, Array], Json]:
@@ -112,7 +115,12 @@ def _shapes(chain: Chain, seeds: Labels, order: int, most: int) -> tuple[Shapes,
 
 
 def _columns(chain: Chain, seeds: Labels, order: int) -> int:
-    """Modes of a table of coordinates: all of a chain, or those that are excited for every N."""
+    """Of a table of coordinates: all modes of a chain, or those that are excited for every N.
+
+    One on a ring.
+    """
+    if chain.periodic:
+        return 1
     if not chain.symbolic:
         return chain.N - 1
     ends = ends_reached(chain, seeds, order)
@@ -180,9 +188,12 @@ def _kind(body: Json) -> RingKind:
 
 def series_from(archive: Archive, body: Json) -> LindstedtSeries:
     """The series again; whatever does not fit is an error."""
-    chain = chain_from(body)
+    if body["ring"] == OF_WAVES:
+        problem = "holds a series of waves in the format before lindstedt made them"
+        raise BundleError(archive.path, problem, "make it again: lindstedt(chain, ...)")
+    chain = chain_from(body, body.get("ends", FIXED))
     seeds = _seeds(chain, body["seeds"])
-    order = integer(body["order"], "order", 0)
+    order = order_of(body["order"])
     frequencies = _chosen_frequencies(body, seeds)
     point, digits = body["point"], body["digits"]
     kind = _kind(body)
@@ -194,6 +205,8 @@ def series_from(archive: Archive, body: Json) -> LindstedtSeries:
         )
     if chain.symbolic and kind.name not in UNIVERSAL:
         raise ValueError(f"no series of the ring {kind.name!r} is one for all N")
+    if chain.periodic and kind is not FLOAT64:
+        raise ValueError(f"no series of the ring {kind.name!r} is one of waves")
     parts = _Reader(archive, body, chain, seeds, order).parts()
     series: Callable[..., LindstedtSeries] = LindstedtSeries
     if chain.symbolic:
@@ -208,7 +221,7 @@ def series_from(archive: Archive, body: Json) -> LindstedtSeries:
         **parts,
         grading=shared_grading(len(seeds), 1 + chain.degree_step * order),
         unit=fraction(body["unit"]),
-        smallest_divisors=tuple(map(_divisor, body["smallest_divisors"])),
+        smallest_divisors=tuple(_divisor(chain, d) for d in body["smallest_divisors"]),
         multiply_adds=int(body["multiply_adds"]),
         digits=None if digits is None else integer(digits, "digits", 1),
         bits=integer(body["bits"], "bits", 0),
@@ -217,26 +230,28 @@ def series_from(archive: Archive, body: Json) -> LindstedtSeries:
 
 
 def _seeds(chain: Chain, entries: Sequence[int | str]) -> Labels:
-    """Seeds as the series has them; InputError for others."""
-    return seed_labels(entries) if chain.symbolic else seed_modes(entries, chain.N)
+    """Seeds as the series has them, those of fixed ends ascending; InputError for others."""
+    seeds = seed_labels(entries) if chain.symbolic else chain.seeds_of(entries)
+    if not chain.periodic and seeds != in_order(seeds):
+        raise ValueError(f"seeds {seeds} do not go together in this order")
+    return seeds
 
 
 def _chosen_frequencies(body: Json, seeds: tuple[int, ...]) -> tuple[Fraction, ...] | None:
     """None if none are chosen; ValueError where seeds and frequencies do not go together."""
     chosen = body["frequencies"]
-    frequencies = None if chosen is None else tuple(fraction(w) for w in chosen)
-    fit = seeds == in_order(seeds)
-    if frequencies is not None:
-        fit = fit and len(frequencies) == len(seeds) and min(frequencies) > 0
-    if not fit:
+    if chosen is None:
+        return None
+    frequencies = tuple(fraction(w) for w in chosen)
+    if len(frequencies) != len(seeds) or min(frequencies) <= 0:
         raise ValueError(f"seeds {seeds} and frequencies {chosen} do not go together")
     return frequencies
 
 
-def _divisor(entry: Json) -> SmallDivisor:
-    size, mode = float(entry["size"]), integer(entry["mode"], "mode", 1)
+def _divisor(chain: Chain, entry: Json) -> SmallDivisor:
+    [mode] = chain.seeds_of([entry["mode"]])
     harmonic = tuple(map(int, entry["harmonic"]))
-    return SmallDivisor(size, mode, harmonic, integer(entry["order"], "order", 0))
+    return SmallDivisor(float(entry["size"]), mode, harmonic, order_of(entry["order"]))
 
 
 def _point(entry: Json) -> ResiduePoint:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields
+from math import prod
 from typing import Any, NamedTuple
 
 import mpmath
@@ -18,14 +19,21 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.words import IntegerTable
 from symfpu.breathers.balance import PeriodicOrbit
-from symfpu.breathers.digits import PreciseOrbit
-from symfpu.breathers.shooting import ShotOrbit
-from symfpu.bundles.entries import chain_entries, chain_from, number, number_entry
+from symfpu.bundles.entries import (
+    FIXED,
+    chain_entries,
+    chain_from,
+    number,
+    number_entry,
+    travelling_entry,
+    travels_from,
+)
 from symfpu.errors import InputError
 from symfpu.files.archive import Archive, Json
 from symfpu.numbers.arithmetic import Numbers
-from symfpu.numbers.typed import fraction, fraction_text, integer, seed_modes
+from symfpu.numbers.typed import fraction, fraction_text, integer
 from symfpu.refinement.digits import PreciseTorus
+from symfpu.tori.columns import columns_of
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 from symfpu.tori.resummation import ResummedTorus
 
@@ -53,7 +61,7 @@ def solution_entries(solution: QuasiPeriodic) -> tuple[Json, Arrays]:
         kinds = f"one of {', '.join(KINDS)}"
         raise InputError("result", name, kinds, "save its coefficients: in_doubles()")
     made, arrays = KINDS[name].written(solution)
-    cosines, layout = _packed(solution.cosines, solution.digits)
+    cosines, layout = packed("cosines", solution.cosines, solution.digits)
     phases = [number_entry(solution.phases[q]) for q in solution.seeds]
     entries: Json = {
         "kind": FOURIER,
@@ -64,6 +72,8 @@ def solution_entries(solution: QuasiPeriodic) -> tuple[Json, Arrays]:
         "phases": phases,
         "digits": solution.digits,
         "harmonics": len(solution.harmonics),
+        **travelling_entry(solution),
+        "warnings": list(solution.warnings),
         **layout,
         "made": made,
     }
@@ -75,8 +85,8 @@ def solution_from(archive: Archive, body: Json) -> QuasiPeriodic:
     """The solution of such entries; ValueError where they do not fit together."""
     if body["class"] not in KINDS:
         raise ValueError(f"no solution is of the class {body['class']!r:.40}")
-    chain = chain_from(body)
-    seeds = seed_modes(body["seeds"], chain.N)
+    chain, travels = chain_from(body, body.get("ends", FIXED)), travels_from(body)
+    seeds = chain.seeds_of(body["seeds"])
     frequencies = tuple(fraction(w) for w in body["frequencies"])
     phases = [number(entry) for entry in body["phases"]]
     if {len(frequencies), len(phases)} != {len(seeds)} or min(frequencies) <= 0:
@@ -85,43 +95,49 @@ def solution_from(archive: Archive, body: Json) -> QuasiPeriodic:
     flat = archive.array("harmonics", INTEGERS, count * len(seeds))
     harmonics = flat.reshape(count, len(seeds)).astype(np.int64)
     digits = None if body["digits"] is None else integer(body["digits"], "digits", 1)
-    cosines = _unpacked(archive, body, (count, chain.N - 1), digits)
+    columns = columns_of(chain, seeds, harmonics, travels=travels).count
+    cosines = unpacked("cosines", archive, body, (count, columns), digits)
     by_seed = dict(zip(seeds, phases, strict=True))
-    parts = FourierTorus(chain, seeds, frequencies, harmonics, cosines, by_seed, digits)
+    known = tuple(map(str, body.get("warnings", ())))
+    parts = FourierTorus(
+        chain, seeds, frequencies, harmonics, cosines, by_seed, digits, travels, known
+    )
     return KINDS[body["class"]].read(parts, archive, body["made"])
 
 
 # coefficients
 
 
-def _packed(cosines: Numbers, digits: int | None) -> tuple[Arrays, Json]:
-    """The arrays of coefficients (H, N-1), and what else is needed to read them."""
+def packed(name: str, values: Numbers, digits: int | None) -> tuple[Arrays, Json]:
+    """The arrays of coefficients of any shape, and what else is needed to read them.
+
+    name : of the array in the file.
+    """
     if digits is None:
-        return {"cosines": _floats(cosines)}, {}
-    if not all(mpmath.isfinite(c) for c in cosines.flat):
+        return {name: _floats(values)}, {}
+    if not all(mpmath.isfinite(c) for c in values.flat):
         problem = "a coefficient that is not finite"
         raise InputError("result", problem, "finite numbers", "compute it again")
-    parts = [c._mpf_ for c in cosines.flat]
+    parts = [c._mpf_ for c in values.flat]
     mantissas = np.empty((len(parts), 1), dtype=object)
     mantissas[:, 0] = [
         -int(mantissa) if sign else int(mantissa) for sign, mantissa, _, _ in parts
     ]
     words = IntegerTable.of(mantissas).words
     exponents = np.array([exponent for _, _, exponent, _ in parts], dtype=INTEGERS)
-    arrays = {"cosines": words.ravel().astype(INTEGERS), "exponents": exponents}
+    arrays = {name: words.ravel().astype(INTEGERS), "exponents": exponents}
     return arrays, {"words": words.shape[-1]}
 
 
-def _unpacked(
-    archive: Archive, body: Json, shape: tuple[int, int], digits: int | None
+def unpacked(
+    name: str, archive: Archive, body: Json, shape: tuple[int, ...], digits: int | None
 ) -> Numbers:
-    rows, columns = shape
-    count = rows * columns
+    """The coefficients of such arrays."""
+    count = prod(shape)
     if digits is None:
-        cosines = _finite(archive, "cosines", count)
-        return cosines.reshape(shape)
+        return _finite(archive, name, count).reshape(shape)
     words = integer(body["words"], "words", 1)
-    flat = archive.array("cosines", INTEGERS, count * words)
+    flat = archive.array(name, INTEGERS, count * words)
     mantissas = IntegerTable(flat.reshape(count, 1, words)).integers()[:, 0]
     exponents = archive.array("exponents", INTEGERS, count).tolist()
     values = np.empty(count, dtype=object)
@@ -193,17 +209,6 @@ def _read_balance(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPer
     return PeriodicOrbit(**_fields(_periodic(parts)), iterations=iterations, sigma=sigma)
 
 
-def _made_by_sweeps(orbit: PreciseOrbit) -> tuple[Json, Arrays]:
-    return {"bound": number_entry(orbit.bound), "sweeps": orbit.sweeps}, {}
-
-
-def _read_sweeps(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
-    sweeps = integer(made["sweeps"], "sweeps", 0)
-    return PreciseOrbit(
-        **_fields(_periodic(parts)), bound=number(made["bound"]), sweeps=sweeps
-    )
-
-
 def _made_precise(torus: PreciseTorus) -> tuple[Json, Arrays]:
     limits = {"bound": number_entry(torus.bound), "error": number_entry(torus.error)}
     return {**limits, "sweeps": torus.sweeps}, {}
@@ -218,37 +223,9 @@ def _read_precise(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPer
     )
 
 
-def _made_by_shooting(orbit: ShotOrbit) -> tuple[Json, Arrays]:
-    history = [number_entry(x) for x in orbit.history]
-    entries = {
-        "closure": number_entry(orbit.closure),
-        "history": history,
-        "steps": orbit.steps,
-    }
-    return entries, {"start": _floats(orbit.start)}
-
-
-def _read_shooting(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
-    _periodic(parts)
-    start = _finite(archive, "start", parts.chain.N - 1)
-    orbit = ShotOrbit(
-        chain=parts.chain,
-        seeds=parts.seeds,
-        frequencies=parts.frequencies,
-        start=start,
-        closure=float(made["closure"]),
-        history=tuple(float(x) for x in made["history"]),
-        steps=integer(made["steps"], "steps", 1),
-    )
-    orbit.__dict__["cosines"] = parts.cosines  # as they were saved, to the last bit
-    return orbit
-
-
 KINDS = {
     FourierTorus.__name__: Kind(_made_plainly, _read_plainly),
     ResummedTorus.__name__: Kind(_made_by_sums, _read_sums),
     PeriodicOrbit.__name__: Kind(_made_by_balance, _read_balance),
-    PreciseOrbit.__name__: Kind(_made_by_sweeps, _read_sweeps),
     PreciseTorus.__name__: Kind(_made_precise, _read_precise),
-    ShotOrbit.__name__: Kind(_made_by_shooting, _read_shooting),
 }

@@ -21,7 +21,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.bundles.bundle import SERIES, document, load_with, parts_from, parts_of
+from symfpu.bundles.bundle import document, load_with, parts_from, parts_of
 from symfpu.bundles.entries import chain_entries, chain_from, number, number_entry
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
@@ -30,14 +30,13 @@ from symfpu.errors import InputError
 from symfpu.files.archive import Archive, Json, write_document
 from symfpu.numbers.arithmetic import ComplexWithDigits, NumberWithDigits, with_digits
 from symfpu.numbers.typed import fraction, fraction_text, integer
+from symfpu.series.series import LindstedtSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 Array = NDArray[Any]
 Classes = Mapping[str, type[Any]]
 
-SCHEMA = 6  # files of results other than series and solutions began with it
-OWN_FORMAT: tuple[type[Any], ...] = (*SERIES, QuasiPeriodic, RingTorus)
+OWN_FORMAT: tuple[type[Any], ...] = (LindstedtSeries, QuasiPeriodic)
 DTYPES = ("<f8", "<c16", "<i8", "|b1")
 SCALARS: dict[str, type[Any]] = {"float64": np.float64, "complex128": np.complex128}
 PLAIN = (bool, int, str, type(None))
@@ -309,7 +308,7 @@ def write_tree(
     writer = Writer(classes)
     root = writer.node(result)
     held = {"root": root, "parts": writer.parts}
-    body = document(SCHEMA, verdict, command, created) | {"result": held}
+    body = document(verdict, command, created) | {"result": held}
     write_document(path, body, writer.arrays)
 
 

@@ -108,13 +108,20 @@ class Enclosed:
 
 
 def enclosed_all(
-    orbit: RoundedOrbit, radius: list[int], tried: list[Guess], progress: Progress
+    orbit: RoundedOrbit,
+    radius: list[int],
+    tried: list[Guess],
+    progress: Progress,
+    omega_off: float = 0.0,
 ) -> tuple[Slopes, list[Enclosed]]:
-    """All of them, with as many harmonics of the slopes as the norms need."""
+    """All of them, with as many harmonics of the slopes as the norms need.
+
+    radius : of the proof of existence, [m, e]. omega_off : above what the frequency is off.
+    """
     cut, reach = FIRST_CUT, FIRST_REACH
     exact = Fraction(radius[0], 2 ** radius[1])
     while True:
-        slopes = slopes_of(orbit, exact, cut, reach)
+        slopes = slopes_of(orbit, exact, cut, reach, omega_off)
         try:
             return slopes, with_slopes(slopes, tried, progress)
         except NoStabilityProof as error:
@@ -136,7 +143,13 @@ def with_slopes(slopes: Slopes, tried: list[Guess], progress: Progress) -> list[
     return result
 
 
-def slopes_of(orbit: RoundedOrbit, radius: Fraction, cut: float, reach: float) -> Slopes:
+def slopes_of(
+    orbit: RoundedOrbit,
+    radius: Fraction,
+    cut: float,
+    reach: float,
+    omega_off: float = 0.0,
+) -> Slopes:
     """The slopes of all bonds along the true orbit, in doubles and bounds."""
     N = orbit.chain.N
     with flint.ctx.workprec(orbit.bits + SPARE_BITS):
@@ -155,6 +168,7 @@ def slopes_of(orbit: RoundedOrbit, radius: Fraction, cut: float, reach: float) -
     return Slopes(
         N=N,
         omega=float(orbit.omega),
+        omega_off=omega_off,
         linear=orbit.chain.frequencies(),
         coupling=part.coupling,
         K=K,

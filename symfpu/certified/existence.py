@@ -41,11 +41,10 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.one_sided import above, below, rational
-from symfpu.numbers.typed import Number, decimal, exact
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, decimal, energy_of, exact
 from symfpu.series.arguments import digits_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
-from symfpu.tori.travelling import require_travelling
 
 FORMAT = "symfpu existence certificate"
 SCHEMA = 3
@@ -79,6 +78,7 @@ class NoExistenceProof(SymfpuError):
         super().__init__(f"no proof of existence: {name} = {by}; {advice}")
 
 
+@public
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ExistenceProof(Tabled):
     """A theorem: the chain has a periodic orbit of this frequency near the computed one.
@@ -147,8 +147,15 @@ class ExistenceProof(Tabled):
         return (
             f"{self.chain!r} has a {self.kind} of seed {self.seed} {joined} {self.condition} "
             f"within {above(self.radius, 2)} of the computed one, and no other of its symmetry "
-            f"within {below(self.unique, 2)}"
+            f"within {below(self.unique, 2)}, distances in the norm {self.norm}"
         )
+
+    @property
+    def norm(self) -> str:
+        """Of the distances: of c_q[n], and of m that stands for an unknown frequency."""
+        if self.fixed == FREQUENCY and not self.half_width:
+            return "sum v nu^n |c_q[n]|"
+        return "v_0 |m| + sum v nu^n |c_q[n]|"
 
     @property
     def condition(self) -> str:
@@ -216,8 +223,9 @@ def interval_text(middle: Any, radius: float) -> str:
     return f"{text} +- {above(rational(radius) + off, 1)}"
 
 
+@public
 def prove_existence(
-    orbit: QuasiPeriodic | RingTorus,
+    orbit: QuasiPeriodic,
     *,
     amplitude: Number | None = None,
     energy: Number | None = None,
@@ -276,15 +284,16 @@ def advice_of(linear: float, fixed: Fixed) -> str:
 
 
 def fixed_value(
-    orbit: QuasiPeriodic | RingTorus,
+    orbit: QuasiPeriodic,
     amplitude: Number | None,
     energy: Number | None,
     half_width: Number,
 ) -> Fixed:
     """What the orbit has exactly; InputError where it does not have it."""
     width = exact(half_width, "half_width")
-    if width < 0:
-        raise InputError("half_width", half_width, "a number from 0 up", "take its size")
+    if not 0 <= width <= 1:
+        advice = "take a part of the frequency, amplitude or energy"
+        raise InputError("half_width", half_width, "a number from 0 to 1", advice)
     if amplitude is not None and energy is not None:
         given = f"amplitude={amplitude} and energy={energy}"
         raise InputError("energy", given, "one of the two", "leave one out")
@@ -292,7 +301,7 @@ def fixed_value(
         fixed = Fixed(AMPLITUDE, exact(amplitude, "amplitude"), width)
         return near(fixed, orbit.amplitude, orbit.chain)
     if energy is not None:
-        fixed = Fixed(ENERGY, exact(energy, "energy"), width)
+        fixed = Fixed(ENERGY, energy_of(energy), width)
         return near(fixed, orbit.energy(), orbit.chain)
     return Fixed(FREQUENCY, orbit.frequency, width)
 
@@ -321,9 +330,9 @@ def on_line(bounds: ProofBounds, line: Line | None) -> ProofBounds:
     return replace(bounds, length=line.length, drift=line.drift)
 
 
-def checked_orbit(orbit: object) -> QuasiPeriodic | RingTorus:
+def checked_orbit(orbit: object) -> QuasiPeriodic:
     """An orbit that the theorem is about; InputError for any other, by name."""
-    if not isinstance(orbit, QuasiPeriodic | RingTorus):
+    if not isinstance(orbit, QuasiPeriodic):
         name, chain = type(orbit).__name__, getattr(orbit, "chain", None)
         given = name if chain is None else f"{name} of {chain!r}"
         allowed = "a solution of one angle of a chain with fixed ends, or a travelling wave"
@@ -331,8 +340,9 @@ def checked_orbit(orbit: object) -> QuasiPeriodic | RingTorus:
     if len(orbit.seeds) > 1:
         given = f"a torus of {len(orbit.seeds)} angles"
         raise InputError("orbit", given, "a solution of one angle", "take one seed")
-    if isinstance(orbit, RingTorus):
-        require_wave(orbit)
+    if orbit.stands:
+        given, allowed = "a torus of standing waves", "a travelling wave"
+        raise InputError("orbit", given, allowed, HALF_A_RING)
     potential = orbit.chain.potential
     series = potential.degree is not None or potential.growths()
     if not potential.exact or not series:
@@ -340,14 +350,6 @@ def checked_orbit(orbit: object) -> QuasiPeriodic | RingTorus:
         advice = "take poly: with its first coefficients"
         raise InputError("chain", orbit.chain, allowed, advice)
     return orbit
-
-
-def require_wave(orbit: RingTorus) -> None:
-    """InputError for a solution of a ring that stands."""
-    try:
-        require_travelling(orbit)
-    except InputError as error:
-        raise InputError("orbit", error.value, error.allowed, HALF_A_RING) from error
 
 
 def not_small(bounds: ProofBounds) -> tuple[str, float, float, str]:

@@ -46,6 +46,7 @@ class Slopes:
     """G_qp[k] in doubles and what they leave out.
 
     coupling : shape (all + 1, N-1, N-1); K : harmonics that the norm of I - A DF sees.
+    omega_off : above what the frequency of the true orbit is off omega, 0 where it is given.
     lost : above the sum over bonds of the moduli of Fourier coefficients of what is not in
         `coupling`, the orbit's own radius among it; cut : the same with harmonics beyond K.
     entry : above the rounding of an entry, summed over harmonics. reach : the harmonics from
@@ -54,6 +55,7 @@ class Slopes:
 
     N: int
     omega: float
+    omega_off: float
     linear: Floats
     coupling: Floats
     K: int
@@ -186,6 +188,10 @@ class Attempt:
         kappa = (n == zero.kappa[0]) & (self.places[1] == zero.kappa[1])
         self.kappa = int(np.flatnonzero(kappa)[0])
         self.slope = -2 * self.z / self.squared * self.coefficients()
+        turns = zero.guess.base * self.sector.folds / 2
+        self.moved_angles = np.abs(n + turns) * slopes.omega_off * UPWARDS
+        twice = 3 * self.magnitude(n) + self.moved_angles  # above 2 (|Re z| + |Im z|)
+        self.moved = self.moved_angles * twice / self.squared * UPWARDS
 
     def angles(self, n: Ints) -> Values:
         """sigma + n omega."""
@@ -288,8 +294,8 @@ class Attempt:
         spread = self.spread(sizes)
         lost = (2 / self.slopes.N * self.slopes.cut + self.slopes.entry) * spread
         return ExponentBounds(
-            residual=self.residual(sizes, spread) * UPWARDS,
-            linear=max(of_columns, self.tail()) + lost + 1e-9,
+            residual=(self.residual(sizes, spread) + self.moved_residual(sizes)) * UPWARDS,
+            linear=max(of_columns, self.tail()) + lost + self.moved_part(sizes, w) + 1e-9,
             lost=lost,
             curvatures=self.curvatures(sizes, w),
             weight=float(w[self.kappa]),
@@ -357,6 +363,25 @@ class Attempt:
         missing = (2 / self.slopes.N * self.slopes.lost + self.slopes.entry) * spread
         return float((norms * above).sum()) + missing * float(size(v).sum())
 
+    def moved_residual(self, sizes: Floats) -> float:
+        """|A (L* v - L v)| where L* has the frequency of the true orbit."""
+        taken = self.taken
+        parts = sizes[taken] * self.moved[taken] * size(self.coefficients()[taken])
+        return float(parts.sum())
+
+    def moved_part(self, sizes: Floats, w: Floats) -> float:
+        """|A (DF* - DF)| where DF* has the frequency of the true orbit."""
+        taken, v = self.taken, size(self.coefficients())
+        other = taken[taken != self.kappa]
+        of_sigma = 2 * sizes[taken] * self.moved_angles[taken] / self.squared[taken]
+        of_kappa = float((of_sigma * v[taken]).sum()) / float(w[self.kappa])
+        of_columns = float((sizes[other] * self.moved[other] / w[other]).max())
+        omega, value = self.slopes.omega, self.zero.value
+        part = self.slopes.omega_off / omega
+        far = (self.columns + 2) * omega + abs(value.real) + abs(value.imag)
+        beyond = self.beyond() * part * (2 + part) * far**2 / self.slopes.linear**2
+        return max(of_kappa, of_columns, float(beyond.max())) * UPWARDS
+
     def norms(self, sizes: Floats, last: int) -> Floats:
         """a of all places up to a harmonic, zero where the symmetry forbids them."""
         table = np.zeros((2 * last + 1, self.slopes.N - 1))
@@ -374,11 +399,12 @@ class Attempt:
         e3 = float((ratios * size(self.coefficients()[taken])).sum())
         other = taken != self.kappa
         scaled = (ratios / w[taken])[other]
-        z = size(self.z[taken])[other]
+        z = (size(self.z[taken]) + self.moved_angles[taken])[other]
         squared = self.slopes.linear**2
         edge = self.beyond() * 2 / squared
         far = (self.columns + 1) * self.slopes.omega - abs(self.zero.value.real)
         far += 2 * self.slopes.omega * self.sector.folds + 2 * abs(self.zero.value.imag)
+        far += (self.columns + 2) * self.slopes.omega_off
         e1 = max(float((scaled * z).max()), float((edge * far).max()))
         e2 = max(float(scaled.max()), float(edge.max()))
         return e1 * UPWARDS, e2 * UPWARDS, e3 * UPWARDS

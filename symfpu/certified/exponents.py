@@ -29,6 +29,7 @@ STEP = 0.1  # over the square root of the largest stiffness of a bond
 ON_CIRCLE = 1e-7  # |log |rho|| below which a multiplier is tried as one of the circle
 INVERSES, NEWTON_STEPS = 5, 3
 CONVERGED = 1e-12
+ALIKE = 1e-6  # relative difference of coefficients that a symmetry makes equal
 MATRICES = 7  # of places by places, that are there at once, those of the bounds among them
 
 
@@ -149,6 +150,15 @@ class FourierSystem:
         z: Values = n * self.omega + shift + value
         return z.real if guess.circle else z
 
+    def _place_of_kappa(self, v: Values) -> int:
+        """That of the largest coefficient.
+
+        Of those alike, from which rounding would choose, the one of the lowest harmonic.
+        """
+        sizes = np.abs(v)
+        alike = np.flatnonzero(sizes >= (1 - ALIKE) * sizes.max())
+        return int(alike[np.argmin(np.abs(self.places[0][alike]))])
+
     def zero(self, guess: Guess) -> FourierZero | None:
         """The nearest one by Newton's method, one inverse for a few steps; None if it is lost."""
         from scipy.linalg import lu_factor, lu_solve
@@ -161,7 +171,7 @@ class FourierSystem:
         factors = lu_factor(matrix)
         v = lu_solve(factors, np.cos(np.arange(len(squared)) + 0.5))
         v = lu_solve(factors, v / np.abs(v).max())
-        place = int(np.argmax(np.abs(v)))
+        place = self._place_of_kappa(v)
         v = v / v[place]
         for _ in range(INVERSES):
             z = self.angles(guess, value)

@@ -19,13 +19,13 @@ from symfpu.certified.rounded_torus import exponentials, rounded_series
 from symfpu.certified.series import Series
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
-from symfpu.normal.linearised import LinearisedFlow, coefficients_by_harmonic
+from symfpu.normal.linearised import Linearised, coefficients_by_harmonic
 from symfpu.normal.modes import NormalMode
 from symfpu.normal.reduction import Block, Bordered
 from symfpu.normal.search import normal_modes
 from symfpu.normal.torus import checked_modes
-from symfpu.refinement.equation import Floats
 from symfpu.refinement.harmonics import chosen_harmonics
+from symfpu.refinement.lattice import Floats
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 
 FRAME_BITS = 60  # of the coefficients of the frame
@@ -112,7 +112,7 @@ class Polish:
         known = coefficients_by_harmonic(torus)
         functions, s = (torus.chain.N + 1) // 2, len(torus.seeds)
         chosen, _ = chosen_harmonics(known, functions, s, HEIGHT)
-        self.flow = LinearisedFlow(torus, chosen)
+        self.flow = Linearised(torus, chosen)
 
     def __call__(self, mode: NormalMode) -> Direction:
         """The direction of a normal mode that is nearly known."""

@@ -19,7 +19,7 @@ from symfpu.certified.rounded_torus import RoundedTorus, residual_of, rounded_to
 from symfpu.certified.series import Series
 from symfpu.errors import InputError
 from symfpu.files.progress import unheard
-from symfpu.refinement.equation import Floats
+from symfpu.refinement.lattice import Floats
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 LOSS = 12  # the first step takes rho / 12 of the strip, as published theorems do

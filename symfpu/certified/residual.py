@@ -28,6 +28,7 @@ from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import with_digits
 from symfpu.numbers.one_sided import above
+from symfpu.numbers.public import public
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 FORMAT = "symfpu torus certificate"
@@ -50,6 +51,7 @@ def write_certificate(body: Body, path: Path | str) -> None:
     write_text(Path(path), text + "\n")
 
 
+@public
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ResidualProof(Tabled):
     """A theorem: what a torus leaves of the equations of motion, at all angles.
@@ -138,6 +140,7 @@ def torus_text(
     return ", ".join([name, *(f"omega_{q}={float(w):.10g}" for q, w in pairs)])
 
 
+@public
 def prove_residual(
     torus: QuasiPeriodic, *, progress: Progress | None = None
 ) -> ResidualProof:

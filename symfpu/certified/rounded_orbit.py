@@ -25,8 +25,6 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
-from symfpu.tori.travelling import wave_coefficients
 
 DOUBLE_DIGITS = 16
 SPARE_DIGITS = 6  # of the integers beyond those of the orbit
@@ -67,19 +65,14 @@ class RoundedOrbit:
         return np.array(scaled)
 
 
-def rounded_orbit(
-    orbit: QuasiPeriodic | RingTorus, digits: int | None = None
-) -> RoundedOrbit:
+def rounded_orbit(orbit: QuasiPeriodic, digits: int | None = None) -> RoundedOrbit:
     """The integers nearest to an orbit; what is below their last place is left out.
 
     digits : of the integers, the orbit's own unless more are asked for.
     """
     digits = max(orbit.digits or DOUBLE_DIGITS, digits or 0)
     with mpmath.workdps(digits + 2 * SPARE_DIGITS):
-        if isinstance(orbit, RingTorus):
-            stretches = _of_wave(orbit)
-        else:
-            stretches = _scaled(orbit.chain, orbit.by_harmonic())
+        stretches = _of_wave(orbit) if orbit.travels else _of_modes(orbit)
         largest = max(abs(x) for x in stretches.flat)
         if not largest:
             raise InputError("orbit", "the chain at rest", "an orbit that moves", ADVICE)
@@ -90,20 +83,21 @@ def rounded_orbit(
     return RoundedOrbit(orbit.chain, orbit.seed, orbit.frequency, bits, rows, digits)
 
 
-def _scaled(chain: Chain, cosines: Numbers) -> Numbers:
+def _of_modes(orbit: QuasiPeriodic) -> Numbers:
     """sqrt(2/N) Omega_q Q_q at the working precision of mpmath."""
+    chain, cosines = orbit.chain, orbit.by_harmonic()
     root = mpmath.sqrt(mpmath.mpf(2) / chain.N)
     units = [root * chain.linear_frequency(q) for q in chain.mode_numbers]
     as_mpf = np.frompyfunc(mpmath.mpf, 1, 1)(cosines)
     return np.asarray(as_mpf * np.array(units, dtype=object))
 
 
-def _of_wave(torus: RingTorus) -> Numbers:
+def _of_wave(torus: QuasiPeriodic) -> Numbers:
     """N^(-1/2) Omega_m c[n] of a wave at harmonic n, in the column of its folded mode m."""
     N, layout = torus.chain.N, layout_of(torus.chain, torus.seed)
-    harmonics, coefficients = wave_coefficients(torus)
-    table = np.full((int(harmonics.max()) + 1, layout.modes), mpmath.mpf(0))
-    for n, c in zip(harmonics[:, 0].tolist(), coefficients[:, 0].tolist(), strict=True):
+    coefficients = torus.by_harmonic()[:, 0].tolist()
+    table = np.full((len(coefficients), layout.modes), mpmath.mpf(0))
+    for n, c in enumerate(coefficients):
         m = n * torus.seed % N
         if m:
             unit = torus.chain.linear_frequency(m) / mpmath.sqrt(N)

@@ -26,7 +26,7 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.arithmetic import Numbers
-from symfpu.refinement.equation import Ints
+from symfpu.refinement.lattice import Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
 
 DOUBLE_DIGITS = 16
@@ -127,22 +127,21 @@ def rounded_torus(solution: object) -> RoundedTorus:
 
 def checked_torus(solution: object) -> QuasiPeriodic:
     """A torus of two angles or more of fixed ends and a polynomial V, or InputError."""
-    chain = getattr(solution, "chain", None)
-    if isinstance(chain, Chain) and chain.periodic:
+    torus = require_solution(solution, "torus")
+    chain = torus.chain
+    if chain.periodic:
         advice = (
             "leave ends= out: what is proved of N bonds holds, unfolded, on a ring of 2N"
         )
         raise InputError("torus", repr(chain), "of a chain with fixed ends", advice)
-    require_solution(solution, "torus")
-    assert isinstance(solution, QuasiPeriodic)
-    if len(solution.seeds) < 2:
+    if len(torus.seeds) < 2:
         advice = "take prove_existence: of one angle more can be proved"
         raise InputError("torus", "a breather", "a torus of two or more angles", advice)
-    potential = solution.chain.potential
+    potential = torus.chain.potential
     if potential.degree is None or not potential.exact:
         allowed = "of a polynomial potential with exact coefficients"
-        raise InputError("torus", repr(solution.chain), allowed, "take poly: instead")
-    return solution
+        raise InputError("torus", repr(torus.chain), allowed, "take poly: instead")
+    return torus
 
 
 def particles_of(chain: Chain, cosines: Numbers) -> Numbers:

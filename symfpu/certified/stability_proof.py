@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,7 +26,7 @@ from symfpu.certified.enclosures import (
     check_count,
     enclosed_all,
 )
-from symfpu.certified.existence import ExistenceProof, prove_existence
+from symfpu.certified.existence import HALF_A_RING, ExistenceProof, prove_existence
 from symfpu.certified.exponent_bounds import RoundedZero, Slopes
 from symfpu.certified.exponents import guesses
 from symfpu.certified.layout import layout_of
@@ -40,7 +40,8 @@ from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.counted import counted
 from symfpu.numbers.one_sided import above, below
-from symfpu.numbers.typed import decimal
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, decimal
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 FORMAT = "symfpu stability certificate"
@@ -94,6 +95,7 @@ class Gap:
     between: tuple[str, str]
 
 
+@public
 @dataclass(frozen=True, eq=False, kw_only=True)
 class StabilityProof(Tabled):
     """A theorem: a breather is linearly stable, or unstable.
@@ -118,7 +120,7 @@ class StabilityProof(Tabled):
     def __repr__(self) -> str:
         proof = self.existence
         chain = repr(proof.chain).removeprefix("Chain(").removesuffix(")")
-        case = f"{chain}, seed {proof.seed}, omega={decimal(proof.frequency)}"
+        case = f"{chain}, seed {proof.seed}, {proof.condition}"
         return f"StabilityProof({case}: {self._found()})"
 
     def _found(self) -> str:
@@ -142,7 +144,10 @@ class StabilityProof(Tabled):
         """What is proved, in one sentence."""
         proof = self.existence
         chain = repr(proof.chain)
-        orbit = f"the periodic orbit of {chain} with frequency {decimal(proof.frequency)}"
+        given = proof.condition
+        if proof.fixed == FREQUENCY:
+            given = f"frequency {decimal(proof.frequency)}"
+        orbit = f"the periodic orbit of {chain} with {given}"
         where = f"within {above(proof.radius, 2)} of the computed one"
         if not self.stable:
             least, most = self.growth
@@ -192,12 +197,19 @@ class StabilityProof(Tabled):
         return Table(columns, known)
 
 
+@public
 def prove_stability(
-    solution: ExistenceProof | QuasiPeriodic, *, progress: Progress | None = None
+    solution: ExistenceProof | QuasiPeriodic,
+    *,
+    amplitude: Number | None = None,
+    energy: Number | None = None,
+    progress: Progress | None = None,
 ) -> StabilityProof:
     """A proof that a breather is linearly stable, or unstable, or an error that says why not.
 
     solution : a breather as `prove_existence` takes it, or its proof, which then is not made again.
+    amplitude, energy : that of the orbit, as of `prove_existence`: its frequency then is in an
+        interval. A breather whose frequency does not tell it from its neighbours needs one of them.
     progress : called as (label, fraction done).
 
     Every Floquet exponent is enclosed by a contraction in Fourier space around the proved orbit,
@@ -212,8 +224,7 @@ def prove_stability(
     0.02488... .. 0.02488...)
     """
     require_no_ring(solution)
-    proof = solution if isinstance(solution, ExistenceProof) else prove_existence(solution)
-    require_exact_frequency(proof)
+    proof = proof_of(solution, amplitude, energy)
     orbit = orbit_of(proof)
     sectors = sectors_of(orbit.chain, orbit.seed)
     found = [guesses(orbit, sector) for sector in sectors]
@@ -221,9 +232,11 @@ def prove_stability(
     tried = growing or [guess for one in found for guess in one]
     if not growing:
         check_count(sectors, found)
-    slopes, enclosed = enclosed_all(orbit, proof.body["radius"], tried, progress or unheard)
-    rows = [proved_exponent(one, sectors, orbit.omega) for one in enclosed]
-    gaps = () if growing else tuple(gaps_of(orbit.omega, sectors, enclosed))
+    radius, off = proof.body["radius"], proof.frequency_radius
+    slopes, enclosed = enclosed_all(orbit, radius, tried, progress or unheard, off)
+    frequency = Interval(orbit.omega, Fraction(off))
+    rows = [proved_exponent(one, sectors, frequency) for one in enclosed]
+    gaps = () if growing else tuple(gaps_of(frequency, sectors, enclosed))
     body = certificate_body(proof, slopes, sectors, enclosed, stable=not growing)
     return StabilityProof(
         existence=proof,
@@ -240,14 +253,34 @@ def require_no_ring(solution: object) -> None:
     if chain is not None and chain.periodic:
         given, allowed = f"a wave of {chain!r}", "a breather of a chain with fixed ends"
         advice = "prove_existence takes waves; normal_modes has their frequencies"
+        if getattr(solution, "stands", False):
+            given, advice = f"a standing wave of {chain!r}", HALF_A_RING
         raise InputError("solution", given, allowed, advice)
 
 
-def require_exact_frequency(proof: ExistenceProof) -> None:
-    """The theorem is about one orbit of an exact frequency."""
-    if proof.fixed != FREQUENCY or proof.half_width:
-        advice = "prove existence without amplitude=, energy= and half_width="
-        raise InputError("solution", proof, "an orbit of an exact frequency", advice)
+def proof_of(
+    solution: ExistenceProof | QuasiPeriodic,
+    amplitude: Number | None,
+    energy: Number | None,
+) -> ExistenceProof:
+    """That the orbit exists; the theorem is about one orbit, not about a segment."""
+    if not isinstance(solution, ExistenceProof):
+        return prove_existence(solution, amplitude=amplitude, energy=energy)
+    for name, value in {"amplitude": amplitude, "energy": energy}.items():
+        if value is not None:
+            advice = "give it to prove_existence, or pass the breather"
+            raise InputError(name, value, "none beside a proof of existence", advice)
+    if solution.half_width:
+        advice = "prove existence without half_width="
+        raise InputError("solution", solution, "one orbit, not a segment", advice)
+    return solution
+
+
+class Interval(NamedTuple):
+    """A frequency that is between middle - off and middle + off."""
+
+    middle: Fraction
+    off: Fraction
 
 
 def orbit_of(proof: ExistenceProof) -> RoundedOrbit:
@@ -263,19 +296,20 @@ def orbit_of(proof: ExistenceProof) -> RoundedOrbit:
 
 
 def proved_exponent(
-    one: Enclosed, sectors: tuple[Sector, ...], omega: Fraction
+    one: Enclosed, sectors: tuple[Sector, ...], frequency: Interval
 ) -> ProvedExponent:
     """The enclosure in doubles."""
     zero = one.zero
     guess, (n, q) = zero.guess, zero.kappa
-    shift = guess.base * guess.sector.folds * omega / 2
+    turns = Fraction(guess.base * guess.sector.folds, 2)
+    shift = turns * frequency.middle
     real, imaginary = (Fraction(x, 2**zero.bits) for x in zero.sigma)
     middle = complex(float(shift + real), float(imaginary))
     rounding = 4 * math.ulp(abs(middle))
     return ProvedExponent(
         sector=sectors.index(guess.sector),
         sigma=middle,
-        radius=float(one.sigma_radius) + rounding,
+        radius=float(one.sigma_radius + turns * frequency.off) + rounding,
         mode=q,
         harmonic=n,
         folds=guess.sector.folds,
@@ -286,18 +320,19 @@ def proved_exponent(
 
 
 def gaps_of(
-    omega: Fraction, sectors: tuple[Sector, ...], enclosed: list[Enclosed]
+    frequency: Interval, sectors: tuple[Sector, ...], enclosed: list[Enclosed]
 ) -> list[Gap]:
     """Between neighbours of every sector, its ends among them; an error where they overlap."""
-    result = []
+    result, omega = [], frequency.middle
     for number, sector in enumerate(sectors):
         points = [(Fraction(0), Fraction(0), "0")]
         for one in enclosed:
             if one.zero.guess.sector == sector:
-                sigma = Fraction(one.zero.sigma[0], 2**one.zero.bits)
+                value = Fraction(one.zero.sigma[0], 2**one.zero.bits)
+                width = one.sigma_radius + abs(value) * frequency.off / omega
                 n, q = one.zero.kappa
                 label = f"mode {q}, harmonic {n}"
-                points.append((sigma / omega, one.sigma_radius / omega, label))
+                points.append((value / omega, width / (omega - frequency.off), label))
         points.append((Fraction(sector.folds, 2), Fraction(0), f"{sector.folds}/2 omega"))
         points.sort()
         pairs = pairwise(points)

@@ -36,11 +36,13 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.one_sided import above, below
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, exact
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 TIME = 10**9  # the paper's longest orbits
 LAST = Fraction(511, 512)  # of the time to the farthest distance
+LONGEST_TIME = Fraction(10**100)
 MOST_DIGITS = 18  # of a double, which tell it from any other
 
 
@@ -76,6 +78,7 @@ def told_apart(larger: float, smaller: float) -> tuple[str, str]:
     return words
 
 
+@public
 @dataclass(frozen=True, eq=False, kw_only=True)
 class StayProof(Tabled):
     """A theorem: every orbit that starts on the computed torus stays near it for so long.
@@ -179,6 +182,7 @@ class StayProof(Tabled):
         return Table({"time": times, "distance": distances}, known)
 
 
+@public
 def prove_stay(
     torus: QuasiPeriodic, *, time: Number = TIME, progress: Progress | None = None
 ) -> StayProof:
@@ -249,8 +253,9 @@ def stay_proof(
 def time_of(time: Number) -> Fraction:
     """A positive time, exact."""
     long = exact(time, "time")
-    if long <= 0:
-        raise InputError("time", time, "a positive number", "take 1e9")
+    if not 1 / LONGEST_TIME <= long <= LONGEST_TIME:
+        allowed = "a positive number of size 1e-100 to 1e100"
+        raise InputError("time", time, allowed, "take 1e9")
     return long
 
 

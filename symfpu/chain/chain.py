@@ -29,12 +29,23 @@ from symfpu.numbers.arithmetic import (
     Arithmetic,
     Numbers,
 )
-from symfpu.numbers.typed import Number, decimal, integer, rational
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import (
+    HIGHEST_ORDER,
+    Number,
+    decimal,
+    integer,
+    integer_between,
+    length_of,
+    rational,
+)
 
 Floats = NDArray[np.float64]
+HIGHEST_POWER = 2 * HIGHEST_ORDER + 2  # of a force, in series of the highest order
 LARGEST_EXPRESSION = 40  # bonds; the cubic coupling has about N^3 terms
 
 
+@public
 @dataclass(frozen=True, init=False, repr=False)
 class Chain:
     """Chain of N bonds, Eq. fpuham; dimensionless.
@@ -81,8 +92,8 @@ class Chain:
         potential: Potential | str | None = None,
         ends: str = "fixed",
     ) -> None:
-        symbolic = N == "N" or isinstance(N, SymbolicLength)
-        object.__setattr__(self, "N", LENGTH if symbolic else integer(N, "N", 2))
+        symbolic = isinstance(N, SymbolicLength) or (isinstance(N, str) and N == "N")
+        object.__setattr__(self, "N", LENGTH if symbolic else length_of(N))
         couplings = checked_coupling(alpha, "alpha"), checked_coupling(beta, "beta")
         if potential is None:
             if not any(couplings):
@@ -234,6 +245,7 @@ class Chain:
 
         A force r^n raises the degree by n - 1, alone or together with others.
         """
+        integer_between(highest, "highest", 0, HIGHEST_POWER - 1, "a lower degree")
         powers = self.relative_couplings(highest + 1)
         reached = {0}
         for degree in range(1, highest + 1):
@@ -264,6 +276,7 @@ class Chain:
         Those units are mu^(n-1), or mu^((n-1)/2) where V is even. Powers that do not act are left
         out.
         """
+        integer_between(highest, "highest", 0, HIGHEST_POWER, "a lower power")
         step, unit = self.degree_step, self.unit_coupling
         relative = {}
         for power in range(1 + step, highest + 1, step):
@@ -305,8 +318,8 @@ class Chain:
         e^(2 pi i q j / N), (..., N-1) to (..., N).
 
         The transform of fixed ends is orthogonal and its own inverse: it also takes momenta, and
-        positions to modes. Here and below arrays of mpf give arrays of mpf at mpmath's working
-        precision; a ring has doubles.
+        positions to modes. Here and below arrays of mpf, or mpc, give the same at mpmath's working
+        precision.
         """
         state, numbers = self.kind_of_ends.state(Q, "Q")
         return self.kind_of_ends.positions(state, numbers)
@@ -488,6 +501,21 @@ def linear_frequencies(N: int, ends: str = "fixed") -> Floats:
     return values
 
 
+TAKES_RINGS = (
+    "leave ends= out; what takes a ring, as lindstedt or travelling_breather, "
+    "is in docs/chains.md"
+)
+
+
+@lru_cache(maxsize=64)
+def linear_by_wave(N: int, ends: str = "fixed") -> Floats:
+    """Omega of the wave numbers 0 .. N-1, of which 0 does not move, as a read-only array."""
+    values = np.zeros(N)
+    values[np.array(ENDS[ends](N).modes) % N] = linear_frequencies(N, ends)
+    values.flags.writeable = False
+    return values
+
+
 def require_chain(chain: object) -> None:
     """InputError for what is no Chain with fixed ends: what every public function asks first.
 
@@ -508,14 +536,10 @@ def require_any_chain(chain: object) -> Chain:
     return chain
 
 
-def require_fixed_ends(chain: Chain) -> None:
+def require_fixed_ends(chain: Chain, advice: str = TAKES_RINGS) -> None:
     """InputError for a ring, by its name."""
     if chain.periodic:
         allowed = "a chain with fixed ends: this is not known on a ring"
-        advice = (
-            "leave ends= out; what takes a ring, as travelling_waves or travelling_breather, "
-            "is in docs/chains.md"
-        )
         raise InputError("chain", chain, allowed, advice)
 
 
@@ -523,4 +547,9 @@ def _squared(values: Numbers) -> Numbers:
     """|values|^2."""
     if values.dtype == complex:
         return np.asarray(values.real**2 + values.imag**2)
+    if values.dtype == object:
+        return np.asarray(_SQUARED_SIZES(values), dtype=object)
     return np.asarray(values**2)
+
+
+_SQUARED_SIZES = np.frompyfunc(lambda value: value.real**2 + value.imag**2, 1, 1)

@@ -6,37 +6,29 @@ from collections.abc import Mapping
 
 import flint
 
-from symfpu.numbers.typed import integer
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import length_of
 
 
+@public
 def frequency_rank(N: int) -> int:
     """Rank over the rationals of Omega_1 .. Omega_(N-1); N - 1 if they are incommensurable.
 
     N : number of bonds, at least 2. The rank is a dimensionless integer, exact.
 
-    Omega_q = -i (x^q - x^-q) with x a primitive 4N-th root of unity; dropping the common factor,
-    each frequency is an integer vector of powers of x modulo the cyclotomic polynomial of 4N. The
-    paper states that no relation holds where N - 1 is prime (section 3.1); it is N that must be:
-    N = 6 has rank 4, N = 7 rank 6.
+    All 2 cos(k pi / 2N), Omega_q at k = N - q, span the real field of the 4N-th roots of unity,
+    of degree phi(4N)/2 = phi(2N) (Euler's phi). Without that of k = 0, which is 2, they still do
+    if N has an odd factor p: the p-th roots of unity add up to zero. If N is a power of 2 all N of
+    them are independent, and the N - 1 frequencies too.
+    The paper states that no relation holds where N - 1 is prime (section 3.1); it is N that must
+    be: N = 6 has rank 4, N = 7 rank 6.
     Raises InputError.
 
     >>> frequency_rank(7), frequency_rank(8), frequency_rank(6)
     (6, 7, 4)
     """
-    from sympy import QQ, Poly, Symbol, cyclotomic_poly
-    from sympy.polys.matrices import DomainMatrix
-
-    N = integer(N, "N", 2)
-    x = Symbol("x")
-    modulus = Poly(cyclotomic_poly(4 * N, x), x, domain=QQ)
-    degree = modulus.degree()
-    rows = []
-    for q in range(1, N):
-        sine = Poly.from_dict({(q,): 1, (4 * N - q,): -1}, x, domain=QQ)
-        remainder = sine.rem(modulus)
-        rows.append([QQ(int(remainder.nth(k))) for k in range(degree)])
-    matrix = DomainMatrix(rows, (N - 1, degree), QQ)
-    return int(matrix.rank())
+    N = length_of(N)
+    return min(N - 1, int(flint.fmpz(2 * N).euler_phi()))
 
 
 def frequencies_cancel(turn: int, combination: Mapping[int, int]) -> bool:

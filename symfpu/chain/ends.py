@@ -10,8 +10,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any, ClassVar
 
+import mpmath
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -21,6 +23,7 @@ from symfpu.numbers.arithmetic import (
     Arithmetic,
     Numbers,
     arithmetic_of,
+    mpf,
     sine_matrix,
 )
 from symfpu.numbers.typed import distinct_modes, seed_modes
@@ -197,7 +200,7 @@ class FixedEnds(Ends):
 
 
 class PeriodicEnds(Ends):
-    """x_(j+N) = x_j: x_j = N^(-1/2) sum_q Q_q e^(2 pi i q j / N), Q_(-q) = conj Q_q; in doubles."""
+    """x_(j+N) = x_j: x_j = N^(-1/2) sum_q Q_q e^(2 pi i q j / N), Q_(-q) = conj Q_q."""
 
     name = "periodic"
     mode_type = complex
@@ -223,12 +226,19 @@ class PeriodicEnds(Ends):
 
     def positions(self, Q: Numbers, numbers: Arithmetic) -> Numbers:
         """Real, with the mean zero."""
+        if numbers is not DOUBLES:
+            cosines, sines = unit_waves(self.N)
+            parts = numbers.dot(_real(Q), cosines), numbers.dot(_imaginary(Q), sines)
+            return np.asarray(parts[0] - parts[1])
         whole = np.zeros((*Q.shape[:-1], self.N), dtype=complex)
         whole[..., np.array(self.modes)] = Q
         return np.asarray(np.fft.ifft(whole, norm="ortho", axis=-1).real)
 
     def coordinates(self, x: Numbers, numbers: Arithmetic) -> Numbers:
         """The mean is left out."""
+        if numbers is not DOUBLES:
+            cosines, sines = (table.T for table in unit_waves(self.N))
+            return _complex(numbers.dot(x, cosines), -numbers.dot(x, sines))
         whole = np.fft.fft(x, norm="ortho", axis=-1)
         return np.asarray(whole[..., np.array(self.modes)])
 
@@ -243,9 +253,13 @@ class PeriodicEnds(Ends):
         return np.asarray(tension - np.roll(tension, 1, axis=-1))
 
     def stretches_of_modes(self, Q: Numbers, numbers: Arithmetic) -> Numbers:
+        if numbers is not DOUBLES:
+            return self.stretches(self.positions(Q, numbers))
         return self.positions(self._differences * Q, numbers)
 
     def forces_on_modes(self, tension: Numbers, numbers: Arithmetic) -> Numbers:
+        if numbers is not DOUBLES:
+            return self.coordinates(self.forces(tension), numbers)
         return -self._differences.conj() * self.coordinates(tension, numbers)
 
     @property
@@ -255,9 +269,9 @@ class PeriodicEnds(Ends):
         return np.asarray(2j * np.sin(half) * np.exp(1j * half))
 
     def state(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
-        self._require_doubles(values, argument)
+        numbers = arithmetic_of(values)
         try:
-            array = np.asarray(values, dtype=complex)
+            array = _complex_array(values, numbers)
         except (TypeError, ValueError) as error:
             allowed = "an array of complex numbers"
             raise InputError(
@@ -265,25 +279,66 @@ class PeriodicEnds(Ends):
             ) from error
         self._require_length(array, argument, self.N - 1, "put the modes last")
         self._require_symmetry(array, argument)
-        return array, DOUBLES
-
-    def displacements(self, values: ArrayLike, argument: str) -> tuple[Numbers, Arithmetic]:
-        self._require_doubles(values, argument)
-        return super().displacements(values, argument)
-
-    def _require_doubles(self, values: ArrayLike, argument: str) -> None:
-        if arithmetic_of(values) is not DOUBLES:
-            advice = "round the state of a ring to doubles"
-            raise InputError(argument, "of many digits", "an array of doubles", advice)
+        return array, numbers
 
     def _require_symmetry(self, array: Numbers, argument: str) -> None:
         """Displacements are real: Q_(-q) = conj Q_q."""
         opposite = [self.place(q if 2 * q == self.N else -q) for q in self.modes]
-        excess = np.abs(array - array[..., opposite].conj()).max(initial=0.0)
-        if not excess <= SYMMETRY * np.abs(array).max(initial=0.0):
+        rounded = array.astype(complex)
+        excess = np.abs(rounded - rounded[..., opposite].conj()).max(initial=0.0)
+        if not excess <= SYMMETRY * np.abs(rounded).max(initial=0.0):
             allowed = "modes with Q_(-q) = conj Q_q, those of real displacements"
             advice = "take chain.modes(x) of the displacements"
             raise InputError(argument, f"off by {excess:.3g}", allowed, advice)
+
+
+def unit_waves(N: int) -> tuple[Numbers, Numbers]:
+    """N^(-1/2) cos and sin of 2 pi q j / N at the working precision of mpmath.
+
+    q by `PeriodicEnds.modes`, j = 0 .. N-1; shapes (N-1, N).
+    """
+    return _unit_waves(N, int(mpmath.mp.prec))
+
+
+@lru_cache(maxsize=8)
+def _unit_waves(N: int, precision: int) -> tuple[Numbers, Numbers]:
+    root = 1 / mpmath.sqrt(N)
+    angles = [2 * mpmath.mpf(k) / N for k in range(N)]
+    places = np.outer(PeriodicEnds(N).modes, np.arange(N)) % N
+    one_turn = [[root * f(x) for x in angles] for f in (mpmath.cospi, mpmath.sinpi)]
+    cosines, sines = (np.array(values, dtype=object)[places] for values in one_turn)
+    return cosines, sines
+
+
+def _complex_array(values: ArrayLike, numbers: Arithmetic) -> Numbers:
+    """An array of complex doubles, or of mpc."""
+    if numbers is DOUBLES:
+        return np.asarray(values, dtype=complex)
+    array = np.asarray(values, dtype=object)
+    return np.asarray(_MPC(array), dtype=object)
+
+
+def _as_mpc(value: Any) -> Any:
+    return mpmath.mpc(mpf(value.real), mpf(value.imag))
+
+
+_MPC = np.frompyfunc(_as_mpc, 1, 1)
+_REAL = np.frompyfunc(lambda value: value.real, 1, 1)
+_IMAGINARY = np.frompyfunc(lambda value: value.imag, 1, 1)
+_COMPLEX = np.frompyfunc(mpmath.mpc, 2, 1)
+
+
+def _real(values: Numbers) -> Numbers:
+    """Real parts of mpc."""
+    return np.asarray(_REAL(values), dtype=object)
+
+
+def _imaginary(values: Numbers) -> Numbers:
+    return np.asarray(_IMAGINARY(values), dtype=object)
+
+
+def _complex(real: Numbers, imaginary: Numbers) -> Numbers:
+    return np.asarray(_COMPLEX(real, imaginary), dtype=object)
 
 
 ENDS: dict[Any, type[Ends]] = {kind.name: kind for kind in (FixedEnds, PeriodicEnds)}

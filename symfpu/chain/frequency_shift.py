@@ -10,7 +10,7 @@ and 9/8 becomes 3/4; for q + n = N the term of n is halved in both. N/3 and 2N/3
 
 At beta = 2 alpha^2/3 both add up to (alpha^2/2N) Omega_q A_q^2, for every mode and without any
 other seed: these are the couplings of the Toda lattice, whose Birkhoff normal form of this order
-is a sum of squares of the single actions. The next order of one seed is symfpu.chain.fourth_shift.
+is a sum of squares of the single actions. Higher orders: `frequency_expansion`.
 """
 
 from __future__ import annotations
@@ -22,11 +22,13 @@ from typing import Any
 import symengine as se
 
 from symfpu.chain.chain import Chain, require_chain
-from symfpu.chain.fourth_shift import fourth_factor
 from symfpu.chain.length import seed_labels
 from symfpu.chain.symbols import amplitude_symbol, linear_symbol
 from symfpu.errors import InputError
-from symfpu.numbers.typed import exact, rational, seed_modes
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, double, rational, seed_modes
+
+LARGEST_AMPLITUDE = 1e25
 
 
 def shift_coefficients(
@@ -43,19 +45,17 @@ def shift_coefficients(
     return (Fraction(0), -half), Fraction(3, 2) * half
 
 
-def frequency_shift(
-    chain: Chain, amplitudes: Mapping[int, float], *, degree: int = 2
-) -> dict[int, float]:
+@public
+def frequency_shift(chain: Chain, amplitudes: Mapping[int, float]) -> dict[int, float]:
     """omega_q - Omega_q of every seed to lowest order, for seed amplitudes by mode; dimensionless.
 
     chain : of any potential; c_3 counts with its square, c_4 with its first power.
     amplitudes : A_q by seed, of cos(omega_q t + phi_q) in Q_q.
-    degree : in the amplitudes; 2, or 4 for the next order of one seed, where c_5 and c_6 enter.
 
     Returns the shifts by seed, the lowest terms of Eq. omeser with the linear frequencies in the
     divisors. In closed form, ours: the sums over modes of the recursion are done. Raises
-    InputError for modes outside the chain, amplitudes that are not finite numbers, other degrees,
-    or degree 4 of several seeds (`frequency_expansion` has it for two).
+    InputError for modes outside the chain and amplitudes that are not finite numbers.
+    `frequency_expansion` has higher orders.
 
     >>> round(frequency_shift(Chain(N=2, beta=1), {1: 0.1})[1], 12)  # sqrt(2)/4 3/4 2 0.01
     0.005303300859
@@ -65,8 +65,7 @@ def frequency_shift(
         allowed = "a mapping from modes to numbers"
         raise InputError("amplitudes", amplitudes, allowed, "write it as {mode: amplitude}")
     seeds = seed_modes(amplitudes, chain.N)
-    numbers = {q: float(exact(amplitudes[q], f"amplitudes, A_{q}")) for q in seeds}
-    next_order = _next_order(degree, seeds)
+    numbers = {q: _amplitude(amplitudes[q], f"amplitudes, A_{q}") for q in seeds}
     linear = chain.frequencies()
     alpha, beta = (chain.potential.coefficient(n) for n in (3, 4))
     quadratic = float(alpha**2) / (2 * chain.N)
@@ -80,47 +79,26 @@ def frequency_shift(
             by_alpha = quadratic * (float(a) + float(b) * square)
             by_beta = cubic * float(c) * square
             total += numbers[n] ** 2 * (by_alpha + by_beta)
-        if next_order:
-            square, ratio = float(linear[q - 1]) ** 2, Fraction(q, chain.N)
-            factor = fourth_factor(chain.potential, ratio, square, float)
-            total += (numbers[q] ** 2 / (2 * chain.N)) ** 2 * factor
         shifts[q] = float(linear[q - 1]) * total
     return shifts
 
 
-def _next_order(degree: object, seeds: tuple[int, ...]) -> bool:
-    """Whether the fourth power of the amplitude is asked for; InputError where it is not known."""
-    if degree == 2:
-        return False
-    if degree != 4:
-        raise InputError("degree", degree, "2 or 4", "see frequency_expansion for more")
-    if len(seeds) > 1:
-        advice = "leave degree out, or see frequency_expansion"
-        raise InputError("seeds", seeds, "one seed where degree is 4", advice)
-    return True
-
-
-def frequency_shift_formula(
-    chain: Chain, seeds: Sequence[int | str], *, degree: int = 2
-) -> dict[int, Any]:
+@public
+def frequency_shift_formula(chain: Chain, seeds: Sequence[int | str]) -> dict[int, Any]:
     """omega_q - Omega_q of every seed to lowest order, as expressions in Omega_q, A{q}.
 
     chain : its exact c_3 and c_4 stand in the formulas.
     seeds : distinct modes, whose amplitudes A{q} are symbols; all is dimensionless. Where N is a
         symbol also 'N-1', 'N-2', ...; the formulas then hold from some N on, where the modes are
         none of the special ones but for q + n = N.
-    degree : in the amplitudes, 2, or 4 for one seed.
 
     Returns expressions by seed, the closed form (ours) of the lowest terms of Eq. omeser, whose
-    numbers `frequency_shift` gives. Raises InputError for modes outside the chain or repeated,
-    other degrees, or degree 4 of several seeds.
+    numbers `frequency_shift` gives. Raises InputError for modes outside the chain or repeated.
 
     >>> frequency_shift_formula(Chain(N=12, potential="toda:1"), (1, 5))
     {1: (1/24)*A1**2*Omega_1, 5: (1/24)*A5**2*Omega_5}
     >>> frequency_shift_formula(Chain("N", beta=1), (1,))
     {1: (9/16)*A1**2*Omega_1**3/N}
-    >>> frequency_shift_formula(Chain("N", potential="poly:0,0,0,1"), (1,), degree=4)
-    {1: (25/32)*A1**4*Omega_1**5/N**2}
     """
     require_chain(chain)
     symbolic = chain.symbolic
@@ -129,7 +107,6 @@ def frequency_shift_formula(
     alpha, beta = (chain.potential.coefficient(n) for n in (3, 4))
     quadratic = rational(alpha**2) / (2 * length)
     cubic = rational(beta) / (2 * length)
-    next_order = _next_order(degree, modes)
     formulas = {}
     for q in modes:
         terms = []
@@ -141,10 +118,14 @@ def frequency_shift_formula(
             by_beta = cubic * rational(c) * square
             shift = (by_alpha + by_beta) * amplitude_symbol(n) ** 2 * linear_symbol(q)
             terms.append(se.expand(shift))
-        if next_order:
-            ratio = None if symbolic else Fraction(q, chain.N)
-            factor = fourth_factor(chain.potential, ratio, linear_symbol(q) ** 2, rational)
-            small = amplitude_symbol(q) ** 2 / (2 * length)
-            terms.append(linear_symbol(q) * small**2 * factor)
         formulas[q] = se.Add(*terms)
     return formulas
+
+
+def _amplitude(value: Number, name: str) -> float:
+    """A number whose fourth power, times that of a coupling, is a double."""
+    size = double(value, name)
+    if abs(size) > LARGEST_AMPLITUDE:
+        allowed = f"a number up to {LARGEST_AMPLITUDE:.0e}"
+        raise InputError(name, value, allowed, "rescale the amplitudes")
+    return size

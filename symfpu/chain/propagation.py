@@ -8,20 +8,27 @@ themselves, and for other potentials those of every power of the stretch that ac
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from itertools import product
+from math import gcd
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.selection import fold
 from symfpu.chain.ends import ENDS, checked_ends
 from symfpu.chain.potentials.potential import Potential
-from symfpu.chain.powers import powers_of
+from symfpu.chain.powers import Powers, powers_of
 from symfpu.errors import InputError
-from symfpu.numbers.typed import integer, seed_modes
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import length_of, order_of, seed_modes
 
-LARGEST_ORDER = 10_000
+MOST_PRODUCTS = 10**7  # of sets of modes
+MOST_LISTED = 10**7  # modes, in all sets that are listed
 
 
+@public
 def reachable_modes(
     N: int,
     seeds: Iterable[int],
@@ -51,28 +58,55 @@ def reachable_modes(
     >>> reachable_modes(32, (3, 5), 1)
     [(3, 5), (2, 6, 8, 10)]
     """
-    kind = ENDS[checked_ends(ends)](integer(N, "N", 2))
-    modes = {abs(q) for q in kind.modes}
+    classes: list[set[int]] = [set(), set()]
+    reached: list[tuple[int, ...]] = []
+    count = 0
+    for parity, there_are_terms, new in _new_sums(N, seeds, order, model, potential, ends):
+        classes[parity] |= new
+        reached.append(tuple(sorted(classes[parity])) if there_are_terms else ())
+        count += len(reached[-1])
+        if count > MOST_LISTED:
+            allowed = f"an order up to which the sets have {MOST_LISTED:,} members in all"
+            advice = f"take order {len(reached) - 2} or less, or excitation_sequence"
+            raise InputError("order", order, allowed, advice)
+    return reached
+
+
+def _new_sums(
+    N: int,
+    seeds: Iterable[int],
+    order: int,
+    model: str | None,
+    potential: Potential | str | None,
+    ends: str,
+) -> Iterator[tuple[int, bool, set[int]]]:
+    """By order: the parity of the number of seeds in a sum, whether there are terms, new modes.
+
+    New are those of sums of that parity which no smaller number of seeds has: q - q adds two to
+    any sum, so that sums of one parity stay, and new ones come from new ones alone.
+    """
+    kind = ENDS[checked_ends(ends)](length_of(N))
+    modes = set(map(abs, kind.modes))
     waves = kind.seeds(seeds)
-    order = integer(order, "order", 0)
-    if order > LARGEST_ORDER:
-        raise InputError(
-            "order", order, f"at most {LARGEST_ORDER}", "the sets repeat long before"
-        )
     powers = powers_of(model, potential)
-    sums = {_folded(q, kind.turn) for q in waves}
-    reached = []
-    for there_are_terms in powers.orders_reached(order):
-        reached.append(tuple(sorted(sums & modes)) if there_are_terms else ())
-        for _ in range(powers.step):
+    latest = {_folded(q, kind.turn) for q in waves}
+    known = [set(latest), set()]
+    added, parity = set(latest), 0
+    for there_are_terms in powers.orders_reached(order_of(order)):
+        yield parity, there_are_terms, added & modes
+        added = set()
+        for step in range(powers.step):
+            parity ^= 1
             # folding is a map of the sums modulo the turn and sign: it may be done at every step
-            sums = {
+            latest = {
                 _folded(total + sign * q, kind.turn)
-                for total in sums
+                for total in latest
                 for q in waves
                 for sign in (1, -1)
-            }
-    return reached
+            } - known[parity]
+            known[parity] |= latest
+            if step == powers.step - 1:
+                added = latest
 
 
 def _folded(total: int, turn: int) -> int:
@@ -81,6 +115,7 @@ def _folded(total: int, turn: int) -> int:
     return min(wave, turn - wave)
 
 
+@public
 def excitation_sequence(
     N: int,
     seeds: Iterable[int],
@@ -110,8 +145,17 @@ def excitation_sequence(
     >>> excitation_sequence(16, (1, -3), 2, ends="periodic")
     [(1, 3), (2, 4, 6), (5, 7)]
     """
-    sets = reachable_modes(N, seeds, order, model=model, potential=potential, ends=ends)
-    return first_orders(sets)
+    seen: set[int] = set()
+    waiting: list[set[int]] = [set(), set()]  # by parity: of orders without terms
+    sequence = []
+    for parity, there_are_terms, new in _new_sums(N, seeds, order, model, potential, ends):
+        waiting[parity] |= new
+        first = waiting[parity] - seen if there_are_terms else set()
+        if there_are_terms:
+            waiting[parity] = set()
+        sequence.append(tuple(sorted(first)))
+        seen |= first
+    return sequence
 
 
 def first_orders(sets: Iterable[Iterable[int]]) -> list[tuple[int, ...]]:
@@ -147,10 +191,11 @@ def coupled_modes(
     >>> coupled_modes(6, (2, 3), 2, model="beta")
     [(2, 3), (1, 2, 3, 5), (1, 2, 3, 4, 5)]
     """
-    N = integer(N, "N", 2)
+    N = length_of(N)
     modes = seed_modes(seeds, N)
-    order = integer(order, "order", 0)
+    order = order_of(order)
     powers = powers_of(model, potential)
+    _check_products(powers, order)
     adds = list(powers.acting(order))
     sets: list[set[int]] = [set(modes)]
     for k in range(1, order + 1):
@@ -160,6 +205,40 @@ def coupled_modes(
                 reached |= _products(N, [sets[j] for j in orders], reached)
         sets.append(reached)
     return [tuple(sorted(members)) for members in sets]
+
+
+def _check_products(powers: Powers, order: int) -> None:
+    """InputError where the orders have too many products of sets, with the highest that fits.
+
+    The products that make an order k are the partitions of k - added into as many parts as the
+    power has factors, or fewer; they are counted before a set is made.
+    """
+    acting = powers.acting(order)
+    waiting = next(acting, None)
+    adds: list[int] = []
+    partitions: list[list[int]] = []  # [t][n], of t into at most n parts, n up to t
+    count = 0
+    for k in range(1, order + 1):
+        if waiting == k:
+            adds.append(k)
+            waiting = next(acting, None)
+        most = powers.factors(max(adds, default=0)) if waiting is None else k
+        partitions.append(_partitions(k - 1, partitions, most))
+        for added in adds:
+            row = partitions[k - added]
+            count += row[min(powers.factors(added), len(row) - 1)]
+        if count > MOST_PRODUCTS:
+            allowed = f"an order with at most {MOST_PRODUCTS:,} products of sets of modes"
+            raise InputError("order", order, allowed, f"take order {k - 1} or less")
+
+
+def _partitions(t: int, smaller: list[list[int]], most: int) -> list[int]:
+    """Partitions of t into at most n parts, by n; those of smaller numbers are known."""
+    row = [int(t == 0)]
+    for n in range(1, min(most, t) + 1):
+        rest = smaller[t - n]
+        row.append(row[-1] + rest[min(n, len(rest) - 1)])
+    return row
 
 
 def _orders(total: int, count: int, most: int | None = None) -> Iterator[tuple[int, ...]]:
@@ -190,6 +269,7 @@ def _products(N: int, sets: list[set[int]], known: set[int]) -> set[int]:
     return found
 
 
+@public
 def coupling_sequence(
     N: int,
     seeds: Iterable[int],
@@ -216,6 +296,31 @@ def coupling_sequence(
     [(2, 3), (1, 5), (4,)]
     """
     return first_orders(coupled_modes(N, seeds, order, model=model, potential=potential))
+
+
+def carried_modes(
+    N: int, seeds: Sequence[int], harmonics: ArrayLike, *, even: bool
+) -> NDArray[np.bool_]:
+    """Which modes can carry which harmonics in a torus of these seeds; shape (H, N-1).
+
+    N : bonds, with fixed ends. harmonics : nu, shape (H, s). even : whether V is.
+
+    A term of a harmonic nu has k_i factors of seed i, k_i - nu_i even, and a wave number
+    sum j_i q_i with j_i - k_i even, up to sign and modulo 2N. So q = +- nu.seeds modulo 2g, with g
+    the greatest common divisor of N and all seeds; sum k_i is odd where V is even. Elsewhere
+    every term is zero, of any potential. Ours: the Proposition harmonic by harmonic.
+
+    >>> carried_modes(9, (3,), [[0], [1], [2]], even=False).nonzero()
+    (array([0, 1, 2]), array([5, 2, 5]))
+    """
+    nu = np.asarray(harmonics, dtype=np.int64)
+    waves, modes = nu @ np.array(seeds), np.arange(1, N)
+    turn = 2 * gcd(N, *map(int, seeds))
+    found = (modes - waves[:, None]) % turn == 0
+    found |= (modes + waves[:, None]) % turn == 0
+    if even:
+        found &= (nu.sum(axis=1) % 2 == 1)[:, None]
+    return np.asarray(found)
 
 
 @lru_cache(maxsize=1 << 18)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symfpu.action_angle.actions import actions as actions_of
-from symfpu.action_angle.twist import SOLVED, Twist, twist
+from symfpu.action_angle.twist import is_refined, twist
 from symfpu.cli.chains import solution_of
 from symfpu.cli.terminal import (
     FileArgument,
@@ -15,31 +15,22 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
-from symfpu.normal.torus import Solution
 from symfpu.reports.action_angle import actions_record, actions_text
 from symfpu.saved.results import load
-from symfpu.tori.ring_torus import RingTorus
 
 
 @app.command(epilog="Example: symfpu actions torus.symfpu --json")
 def actions(file: FileArgument, as_json: JsonOption = False) -> None:
     """Actions I of a torus or breather, and the twist d omega / d I with its signature.
 
-    Of waves of a ring that are not refined the actions alone.
+    Of a torus of a series, which is not refined, the actions alone: `symfpu refine` makes one.
     """
     solution = solution_of(load(path_named("FILE", file)), file)
     with progress_bar("twist") as advance:
         advance("twist", NO_FRACTION)
-        found = _twist(solution)
+        found = twist(solution) if is_refined(solution) else None
     record = actions_record(solution, actions_of(solution), found)
     if as_json:
         print_json(record)
     else:
         say(actions_text(record))
-
-
-def _twist(solution: Solution) -> Twist | None:
-    """None of waves of a ring as their series gave them: it is not differentiated."""
-    if isinstance(solution, RingTorus) and not solution.residual() <= SOLVED:
-        return None
-    return twist(solution)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import shlex
+import warnings
 from typing import Annotated
 
 import typer
 
 from symfpu.breathers.at_energy import breather_at_energy
-from symfpu.breathers.balance import PeriodicOrbit, breather_at_amplitude, periodic_orbit
-from symfpu.breathers.digits import periodic_orbit_digits
+from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
 from symfpu.breathers.floquet import floquet
+from symfpu.breathers.precise_orbit import periodic_orbit_digits
 from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.cli.chains import (
     AlphaOption,
@@ -35,11 +36,10 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
-from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import save
-from symfpu.tori.quasiperiodic import FourierTorus
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 DOUBLE_ENERGY = (
     "the energy is met in doubles; the digits are of the orbit with the frequency found"
@@ -83,13 +83,16 @@ def breather(
         require_fixed_ends(chain)
     file = output_named(output)
     picture = picture_named(plot)
+    doubts: tuple[str, ...]
     doubts = (DOUBLE_ENERGY,) if energy is not None and places is not None else ()
     with progress_bar("Newton's method") as advance:
-        orbit: FourierTorus | RefinedRingTorus
-        orbit = _found(chain, mode, omega, amplitude, energy)
+        orbit: QuasiPeriodic
+        with warnings.catch_warnings(record=True) as several:
+            warnings.simplefilter("always", UserWarning)
+            orbit = _found(chain, mode, omega, amplitude, energy)
+        doubts += tuple(str(w.message) for w in several if w.category is UserWarning)
         if places is not None:
             advance("digits", NO_FRACTION)
-            assert isinstance(orbit, FourierTorus)
             orbit = periodic_orbit_digits(
                 orbit, places, frequency=omega, amplitude=amplitude
             )
@@ -111,7 +114,7 @@ def breather(
 
 def _found(
     chain: Chain, seed: int, omega: str | None, amplitude: str | None, energy: str | None
-) -> PeriodicOrbit | RefinedRingTorus:
+) -> QuasiPeriodic:
     if chain.periodic:
         return travelling_breather(
             chain, seed, frequency=omega, amplitude=amplitude, energy=energy

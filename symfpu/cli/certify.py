@@ -37,7 +37,6 @@ from symfpu.reports.existence import existence_record, existence_text
 from symfpu.reports.stability_proof import stability_record, stability_text
 from symfpu.saved.results import load
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 AmplitudeOption = Annotated[
     str | None,
@@ -98,15 +97,13 @@ def certify(
     """Prove that a periodic orbit exists near a breather, or how long orbits stay near a torus.
 
     Of a breather or a wave that travels along a ring: existence, at exactly its frequency or at
-    the amplitude or energy given; of a breather its stability at its frequency. Of a
+    the amplitude or energy given; of a breather its stability, at the same. Of a
     torus of two or more angles: its residual at all angles, and how near to it an orbit stays that
     starts on it. Exit code 1 where the bounds do not prove it.
     """
     solution = solution_of(load(path_named("FILE", file)), file)
-    wave = isinstance(solution, RingTorus) and len(solution.seeds) == 1
-    if not wave or stability:
+    if len(solution.seeds) > 1 or stability:
         require_fixed_ends(solution.chain)
-    assert isinstance(solution, QuasiPeriodic | RingTorus)
     of_breather = {
         "amplitude": amplitude,
         "energy": energy,
@@ -125,7 +122,6 @@ def certify(
                 of_breather | {"stability": stability or None},
                 "a torus of two or more angles",
             )
-            assert isinstance(solution, QuasiPeriodic)
             proof = _torus_proof(solution, time, residual, advance)
         if target is not None:
             proof.write(target)
@@ -139,14 +135,14 @@ def _refuse(options: Mapping[str, Any], solution: str) -> None:
             raise InputError(name, value, f"none for {solution}", "leave it out")
 
 
-def _existence(orbit: QuasiPeriodic | RingTorus, options: Mapping[str, Any]) -> Proof:
+def _existence(orbit: QuasiPeriodic, options: Mapping[str, Any]) -> ExistenceProof:
     return prove_existence(
         orbit, **{name: value for name, value in options.items() if value is not None}
     )
 
 
 def _of_breather(
-    orbit: QuasiPeriodic | RingTorus,
+    orbit: QuasiPeriodic,
     options: Mapping[str, Any],
     stability: bool,
     progress: Progress,
@@ -154,8 +150,10 @@ def _of_breather(
     if not stability:
         return _existence(orbit, options)
     assert isinstance(orbit, QuasiPeriodic)
-    _refuse(options, "--stability, which is at the breather's frequency")
-    return prove_stability(orbit, progress=progress)
+    width = {"half_width": options["half_width"]}
+    _refuse(width, "--stability, which is of one orbit")
+    proof = _existence(orbit, options)
+    return prove_stability(proof, progress=progress)
 
 
 def _torus_proof(

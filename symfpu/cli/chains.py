@@ -12,7 +12,6 @@ from symfpu.cli.choices import choice
 from symfpu.cli.terminal import whole
 from symfpu.errors import InputError
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 ENDS = ("fixed", "periodic")
 BONDS = typer.Option(
@@ -54,7 +53,7 @@ def chain_of(
     return Chain(N, alpha, beta, potential=potential, ends=ends)
 
 
-def solution_of(bundle: Bundle, file: str) -> QuasiPeriodic | RingTorus:
+def solution_of(bundle: Bundle, file: str) -> QuasiPeriodic:
     """The solution of a file; InputError, with what it holds, where there is none."""
     if bundle.torus is None:
         kind = type(bundle.result).__name__

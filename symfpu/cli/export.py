@@ -14,8 +14,6 @@ from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file
 from symfpu.saved.results import load
-from symfpu.series.travelling import TravellingSeries
-from symfpu.tori.ring_torus import RingTorus
 
 # known to the help without importing them
 LANGUAGES = ("c", "fortran", "numpy", "mpmath", "octave")
@@ -79,7 +77,6 @@ def export(
             advice = "leave out --series"
         raise InputError("FILE", file, f"a file with a {wanted} in it", advice)
     require_fixed_ends(solution.chain)
-    assert not isinstance(solution, (RingTorus, TravellingSeries))
     with progress_bar("source code"):
         written = export_source(
             solution,

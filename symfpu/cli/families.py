@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import shlex
 from pathlib import Path
 from typing import Annotated, Any
@@ -41,16 +40,14 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
-from symfpu.families.family import Family
 from symfpu.families.following import METHODS, family
 from symfpu.families.normal_events import RESONANCE_LENGTH
 from symfpu.figures.family import draw_family
-from symfpu.files.writing import output_folder
+from symfpu.files.writing import output_folder, write_rows
 from symfpu.numbers.counted import counted
 from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import refine, refine_at_amplitudes, refine_at_energy
 from symfpu.reports.family import (
     family_table,
@@ -137,7 +134,7 @@ def refine_file(
     how: dict[str, Any] = {"tolerance": number("tolerance", tolerance)}
     how["most_harmonics"] = most_harmonics
     with progress_bar("Newton's method") as advance:
-        refined: RefinedTorus | RefinedRingTorus | PreciseTorus
+        refined: RefinedTorus | PreciseTorus
         if energy is not None:
             refined = refine_at_energy(
                 torus, energy, harmonic=harmonic, progress=advance, **how
@@ -167,9 +164,9 @@ def _found(
     digits: int | None,
     file: Path | None,
     **how: Any,
-) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
+) -> RefinedTorus | PreciseTorus:
     """Of the same frequencies, or of given amplitudes."""
-    found: RefinedTorus | RefinedRingTorus | PreciseTorus
+    found: RefinedTorus | PreciseTorus
     how |= {"digits": digits, "file": file}
     if amplitudes is None:
         found = refine(torus, **how)
@@ -178,7 +175,7 @@ def _found(
     return found
 
 
-def verdict_of(torus: RefinedTorus | RefinedRingTorus | PreciseTorus) -> dict[str, Any]:
+def verdict_of(torus: RefinedTorus | PreciseTorus) -> dict[str, Any]:
     """What a file says of a refined torus."""
     if isinstance(torus, PreciseTorus):
         return {"verdict": "torus", "reasons": []}
@@ -223,7 +220,9 @@ def follow_family(
     ] = None,
     from_energy: Annotated[
         str | None,
-        typer.Option(help="Energy where it begins.  Default: a thousandth.", metavar="E"),
+        typer.Option(
+            help="Energy where it begins.  Default: near the linear limit.", metavar="E"
+        ),
     ] = None,
     members: Annotated[str, typer.Option(help="The most members.", metavar="M")] = "200",
     multipliers: Annotated[
@@ -282,7 +281,7 @@ def follow_family(
         )
         pictures = [] if folder is None else draw_family(found, folder)
         if folder is not None:
-            _write_table(found, folder / "family.csv")
+            write_rows(folder / "family.csv", family_table(found))
         keep(found, saved, context)
         draw(found.plot, picture)
     if as_json:
@@ -302,8 +301,3 @@ def _kept(folder: Path | None) -> str:
     if folder is None or not any(folder.iterdir()):
         return NOTHING_KEPT
     return f"members found so far are kept in {folder}; the same command goes on from them"
-
-
-def _write_table(found: Family, path: Path) -> None:
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        csv.writer(stream).writerows(family_table(found))

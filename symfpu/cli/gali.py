@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from functools import partial
 from math import isfinite
@@ -61,11 +60,12 @@ from symfpu.dynamics.alignment import (
 from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from symfpu.errors import InputError
 from symfpu.figures.alignment import draw_alignment
-from symfpu.files.writing import output_folder
+from symfpu.files.writing import output_folder, write_rows
 from symfpu.normal.search import normal_modes
-from symfpu.normal.torus import Solution, checked_modes
+from symfpu.normal.torus import checked_modes
 from symfpu.plots.indices import foretold as draw_foretold
 from symfpu.reports.tables import fifteen_digits
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
@@ -184,7 +184,7 @@ def gali(
 class _Forecast(NamedTuple):
     """The linearised flow about a torus: what foretells its indices."""
 
-    torus: Solution
+    torus: QuasiPeriodic
     flow: LinearFlow
 
     def of(self, found: AlignmentIndices, seed: int) -> ForetoldIndices:
@@ -302,8 +302,8 @@ def _write_table(
     nothing = np.empty((len(found.times), 0))
     ours = nothing if closed is None else closed.log10_gali
     samples = zip(*columns, ours, strict=True)
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["t", *indices, "lyapunov", *due])
-        for t, values, exponent, told in samples:
-            writer.writerow([repr(float(v)) for v in (t, *values, exponent, *told)])
+    rows = [
+        [repr(float(v)) for v in (t, *values, exponent, *told)]
+        for t, values, exponent, told in samples
+    ]
+    write_rows(path, [["t", *indices, "lyapunov", *due], *rows])

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-import io
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, BinaryIO
 
 import numpy as np
 import typer
@@ -48,11 +47,9 @@ from symfpu.cli.verbs import app
 from symfpu.dynamics.orbits import Orbit, integrate
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
-from symfpu.files.writing import output_file, write_text
-from symfpu.numbers.arithmetic import Numbers
+from symfpu.files.writing import output_file, write_file, write_rows
 from symfpu.reports.tables import fifteen_digits, text_table
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 Floats = NDArray[np.float64]
 LOST_ENERGY = 1e-3  # relative
@@ -149,24 +146,18 @@ def _record(made: Orbit, start: Start) -> dict[str, Any]:
     return made.record() | {"start": start.record} | _comparison(made, start.torus)
 
 
-def _comparison(made: Orbit, torus: QuasiPeriodic | RingTorus | None) -> dict[str, Any]:
+def _comparison(made: Orbit, torus: QuasiPeriodic | None) -> dict[str, Any]:
     """Deviations relative to the largest coordinate of the torus at the samples."""
     names = "largest_deviation", "largest_deviation_time", "torus_average_spectrum"
     if torus is None:
         return dict.fromkeys(names)
-    there = _modes_of(torus, made.times)
+    there = torus.Q(made.times)
     largest = np.max(np.abs(there))
     distances = np.max(np.abs(made.Q - there), axis=1) / largest
     worst = int(np.argmax(distances))
     expected = [fifteen_digits(value) for value in torus.average_spectrum()]
     found = fifteen_digits(distances[worst]), fifteen_digits(made.times[worst]), expected
     return dict(zip(names, found, strict=True))
-
-
-def _modes_of(torus: QuasiPeriodic | RingTorus, times: Floats) -> Numbers:
-    if isinstance(torus, RingTorus):
-        return torus.mode_coordinates(times)
-    return torus.positions(times)
 
 
 def _print(record: dict[str, Any]) -> None:
@@ -205,29 +196,17 @@ def _write(path: Path, made: Orbit) -> None:
     """The samples: t, H and E_q, and in .npz also Q and P."""
     spectrum = made.harmonic_energies()
     if path.suffix == ".csv":
-        write_text(path, _table(made, spectrum))
+        write_rows(path, _table(made, spectrum))
         return
-    draft = path.with_name(f".{path.name}")
-    try:
-        with draft.open("wb") as stream:
-            np.savez(stream, t=made.times, Q=made.Q, P=made.P, H=made.energies, E=spectrum)
-        draft.replace(path)
-    except OSError as error:
-        draft.unlink(missing_ok=True)
-        raise InputError(
-            "output",
-            str(path),
-            "a file that can be written",
-            f"choose another ({error.strerror})",
-        ) from error
+
+    def write(stream: BinaryIO) -> None:
+        np.savez(stream, t=made.times, Q=made.Q, P=made.P, H=made.energies, E=spectrum)
+
+    write_file(path, write)
 
 
-def _table(made: Orbit, spectrum: Floats) -> str:
-    """t, H and E_q of the samples, with commas between them."""
-    text = io.StringIO()
-    rows = csv.writer(text)
-    modes = [f"E{q}" for q in made.chain.mode_numbers]
-    rows.writerow(["t", "H", *modes])
+def _table(made: Orbit, spectrum: Floats) -> Iterator[list[str]]:
+    """A head, then t, H and E_q of each sample."""
+    yield ["t", "H", *(f"E{q}" for q in made.chain.mode_numbers)]
     for t, H, E in zip(made.times, made.energies, spectrum, strict=True):
-        rows.writerow([repr(float(v)) for v in (t, H, *E)])
-    return text.getvalue()
+        yield [repr(float(v)) for v in (t, H, *E)]

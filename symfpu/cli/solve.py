@@ -39,16 +39,12 @@ from symfpu.cli.tori import print_solution
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.reports.solution import solution_record
 from symfpu.reports.torus import assessment_text, torus_record
 from symfpu.saved.results import save
 from symfpu.series.lindstedt import lindstedt
-from symfpu.series.travelling import travelling_waves
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.at_energy import torus_at_energy
 from symfpu.tori.frequencies import torus_at_amplitudes
-from symfpu.tori.ring_torus import RingTorus, travelling_torus
-from symfpu.tori.ring_verdict import assess_waves
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment, assess
 
@@ -209,11 +205,11 @@ def _shares_text(wish: Wish) -> str:
 
 def _found(
     chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
-) -> tuple[QTorus | RingTorus, Assessment, dict[str, Any]]:
+) -> tuple[QTorus, Assessment, dict[str, Any]]:
     """The torus, the verdict on its series, and both for JSON."""
     if chain.periodic:
-        return _on_a_ring(chain, seeds, wish, advance)
-    torus = _with_fixed_ends(chain, seeds, wish, advance)
+        _refuse_on_a_ring(wish)
+    torus = _torus(chain, seeds, wish, advance)
     assessment = assess(torus.series, torus, progress=advance)
     record = torus_record(torus, assessment)
     if wish.energy is not None:
@@ -222,9 +218,7 @@ def _found(
     return torus, assessment, record
 
 
-def _with_fixed_ends(
-    chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
-) -> QTorus:
+def _torus(chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress) -> QTorus:
     if wish.frequencies is not None:
         series = lindstedt(
             chain, seeds, wish.frequencies, wish.order, digits=wish.digits, progress=advance
@@ -263,24 +257,3 @@ def _refuse_on_a_ring(wish: Wish) -> None:
         allowed = "none with --ends periodic, which is in doubles"
         advice = "leave it out; what takes a ring is in docs/chains.md"
         raise InputError("digits", wish.digits, allowed, advice)
-
-
-def _on_a_ring(
-    chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
-) -> tuple[RingTorus, Assessment, dict[str, Any]]:
-    """Travelling waves; from frequencies alone, in doubles."""
-    _refuse_on_a_ring(wish)
-    assert wish.frequencies is not None
-    waves = travelling_waves(chain, seeds, wish.frequencies, wish.order, progress=advance)
-    advance("amplitudes", NO_FRACTION)
-    K, cut = wish.frequency_order, wish.coordinate_order
-    torus = travelling_torus(waves, frequency_order=K, order=cut)
-    assessment = assess_waves(waves, torus, progress=advance)
-    record = {
-        **solution_record(torus),
-        "order": torus.order,
-        "frequency_order": torus.frequency_order,
-        "verdict": assessment.headline,
-        "assessment": assessment.record(),
-    }
-    return torus, assessment, record

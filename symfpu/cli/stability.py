@@ -30,7 +30,7 @@ from symfpu.files.writing import output_folder
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import normal_modes
 from symfpu.normal.self_consistent import solve_normal_frequency
-from symfpu.normal.torus import LENGTH, Solution
+from symfpu.normal.torus import LENGTH
 from symfpu.reports.normal import (
     BySeries,
     by_series,
@@ -40,6 +40,7 @@ from symfpu.reports.normal import (
     series_text,
 )
 from symfpu.saved.results import load
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 MEMBERS = 9
 TO_AMPLITUDES = "to-amplitudes"
@@ -131,7 +132,7 @@ def _refuse(option: str, given: str | None, allowed: str) -> None:
 
 
 def _modes(
-    torus: Solution, chosen: list[int] | None, length: int, order: int | None
+    torus: QuasiPeriodic, chosen: list[int] | None, length: int, order: int | None
 ) -> tuple[NormalModes, list[BySeries]]:
     """Normal modes, and those by series if an order is given."""
     with progress_bar("normal modes") as advance:
@@ -150,7 +151,7 @@ def _modes(
 
 
 def _line(
-    torus: Solution,
+    torus: QuasiPeriodic,
     amplitudes: str,
     members: str | None,
     chosen: list[int] | None,

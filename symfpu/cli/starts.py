@@ -17,7 +17,6 @@ from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.saved.results import load
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 StartArgument = Annotated[str | None, typer.Argument(help=SAVED_SOLUTION, metavar="[FILE]")]
 OwnBonds = Annotated[
@@ -71,7 +70,7 @@ class Start:
     chain: Chain
     Q: Numbers
     P: Numbers
-    torus: QuasiPeriodic | RingTorus | None
+    torus: QuasiPeriodic | None
     record: dict[str, Any]
 
 
@@ -104,7 +103,7 @@ def start_of(
 
 def _on_a_torus(file: str) -> Start:
     saved = solution_of(load(path_named("FILE", file)), file)
-    torus = saved if isinstance(saved, RingTorus) else saved.in_doubles()
+    torus = saved.in_doubles()
     Q, P = torus.state()
     return Start(torus.chain, Q, P, torus, {"kind": "torus", "file": file})
 

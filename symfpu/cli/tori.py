@@ -16,15 +16,11 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.reports.family import refined_text
 from symfpu.reports.solution import solution_text
 from symfpu.saved.results import load
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
-
-REFINED = RefinedTorus, RefinedRingTorus
 
 
 def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
@@ -64,7 +60,7 @@ def show(
         return
     record = {} if solution is None else solution.record()
     verdict = bundle.verdict or {}
-    if verdict and not isinstance(solution, REFINED):
+    if verdict and not isinstance(solution, RefinedTorus):
         say(f"verdict: {verdict.get('verdict')}")
     _print_held(bundle, record)
     for reason in verdict.get("reasons", []):
@@ -78,13 +74,13 @@ def _print_held(bundle: Bundle, record: dict[str, Any]) -> None:
     solution = bundle.torus
     if solution is None:
         say(bundle.result)
-    elif isinstance(solution, REFINED):
+    elif isinstance(solution, RefinedTorus):
         say(refined_text(solution))
     else:
         print_solution(solution, record)
 
 
-def print_solution(solution: QuasiPeriodic | RingTorus, record: dict[str, Any]) -> None:
+def print_solution(solution: QuasiPeriodic, record: dict[str, Any]) -> None:
     """A solution for a reader, from its record."""
     if isinstance(solution, QTorus):
         _print_torus(solution, record)

@@ -19,8 +19,10 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from symfpu.errors import InputError, SymfpuError
+from symfpu.numbers.arithmetic import DOUBLES
+from symfpu.numbers.public import public
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, require_solution
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, require_fixed_solution
 
 Floats = NDArray[np.float64]
 Angles = Floats | None  # (s,), or those of the torus
@@ -38,12 +40,13 @@ NO_COMPILER = f"no C compiler: {COMPILER_SEARCH}; install one or take 'numpy'"
 class Backend(Protocol):
     """Functions of times (T,) and phases (s,) or None for the torus' own."""
 
-    def positions(self, t: Floats, phases: Angles) -> Floats: ...
-    def momenta(self, t: Floats, phases: Angles) -> Floats: ...
+    def Q(self, t: Floats, phases: Angles) -> Floats: ...
+    def P(self, t: Floats, phases: Angles) -> Floats: ...
     def harmonic_energies(self, t: Floats, phases: Angles) -> Floats: ...
     def energy(self, t: Floats, phases: Angles) -> Floats: ...
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Evaluator:
     """A torus to be evaluated in doubles at many times.
@@ -73,13 +76,13 @@ class Evaluator:
         harmonics = f"{len(self.torus.harmonics)} harmonics"
         return f"Evaluator({chain}, seeds={seeds}, {harmonics}, backend={self.backend!r})"
 
-    def positions(self, t: ArrayLike, phases: Phases = None) -> Floats:
+    def Q(self, t: ArrayLike, phases: Phases = None) -> Floats:
         """Mode coordinates Q_q(t); (N-1,) for a number, (T, N-1) for an array."""
-        return self._at(t, phases, self.functions.positions)
+        return self._at(t, phases, self.functions.Q)
 
-    def momenta(self, t: ArrayLike, phases: Phases = None) -> Floats:
-        """Mode momenta P_q(t), in the shapes of positions."""
-        return self._at(t, phases, self.functions.momenta)
+    def P(self, t: ArrayLike, phases: Phases = None) -> Floats:
+        """Mode momenta P_q(t), in the shapes of Q."""
+        return self._at(t, phases, self.functions.P)
 
     def harmonic_energies(self, t: ArrayLike = 0.0, phases: Phases = None) -> Floats:
         """Harmonic energies E_q(t) (Eq. harmonicene).
@@ -126,7 +129,7 @@ def _double(value: Any) -> Any:
 
 def _finite(argument: str, values: Any, allowed: str) -> Floats:
     try:
-        array = np.asarray(values, dtype=np.float64)
+        array = DOUBLES.array(values)
     except (TypeError, ValueError) as error:
         raise InputError(argument, values, allowed, "pass real numbers") from error
     if not np.isfinite(array).all():
@@ -134,6 +137,7 @@ def _finite(argument: str, values: Any, allowed: str) -> Floats:
     return array
 
 
+@public
 def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Evaluator:
     """The torus as fast functions of time and phases, in doubles.
 
@@ -153,13 +157,13 @@ def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Ev
     >>> chain, omega, harmonics = Chain(4, alpha=1), Fraction(1, 2), np.array([[1]])
     >>> mode = FourierTorus(chain, (1,), (omega,), harmonics, cosines, {1: 0.0})
     >>> functions = compile_evaluator(mode, backend="numpy")
-    >>> functions.momenta(0.0, phases={1: 1.5707963267948966}).tolist()
+    >>> functions.P(0.0, phases={1: 1.5707963267948966}).tolist()
     [-0.5, 0.0, 0.0]
     """
     if isinstance(torus, LindstedtSeries):
         advice = "call solve_amplitudes(series) first, or export the series"
         raise InputError("torus", "a series without amplitudes", "a torus", advice)
-    require_solution(torus, "torus")
+    require_fixed_solution(torus, "torus")
     if backend is not None and backend not in BACKENDS:
         allowed = f"one of {', '.join(BACKENDS)}, or None"
         raise InputError("backend", backend, allowed, "name a backend or leave it out")
@@ -206,7 +210,11 @@ def _library(source: str, compiler: list[str]) -> ctypes.CDLL:
     ) as folder:
         written = Path(folder, f"{NAME}.c")
         library = Path(folder, f"{NAME}.so")
-        written.write_text(source, encoding="ascii")
+        try:
+            written.write_text(source, encoding="ascii")
+        except OSError as error:
+            advice = "make room there, or set TMPDIR to another folder"
+            raise SymfpuError(f"{written}: {error.strerror}; {advice}") from error
         files = ["-o", str(library), str(written), "-lm"]
         _run([*compiler, *FLAGS, *files])
         return ctypes.CDLL(str(library))
@@ -247,10 +255,10 @@ class CompiledFunctions:
         """Itself: loaded functions do not change."""
         return self
 
-    def positions(self, t: Floats, phases: Angles) -> Floats:
+    def Q(self, t: Floats, phases: Angles) -> Floats:
         return self._call("positions", t, phases, self.modes)
 
-    def momenta(self, t: Floats, phases: Angles) -> Floats:
+    def P(self, t: Floats, phases: Angles) -> Floats:
         return self._call("momenta", t, phases, self.modes)
 
     def harmonic_energies(self, t: Floats, phases: Angles) -> Floats:
@@ -278,11 +286,11 @@ class NumpyFunctions:
 
     torus: FourierTorus
 
-    def positions(self, t: Floats, phases: Angles) -> Floats:
-        return self._with(phases).positions(t)
+    def Q(self, t: Floats, phases: Angles) -> Floats:
+        return self._with(phases).Q(t)
 
-    def momenta(self, t: Floats, phases: Angles) -> Floats:
-        return self._with(phases).momenta(t)
+    def P(self, t: Floats, phases: Angles) -> Floats:
+        return self._with(phases).P(t)
 
     def harmonic_energies(self, t: Floats, phases: Angles) -> Floats:
         return self._with(phases).harmonic_energies(t)

@@ -24,8 +24,9 @@ from symfpu.codegen.torus_program import (
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.numbers.arithmetic import text
-from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.numbers.public import public
+from symfpu.series.series import LindstedtSeries, require_series
+from symfpu.tori.quasiperiodic import QuasiPeriodic, require_fixed_solution
 from symfpu.tori.torus import QTorus
 
 LANGUAGES = {
@@ -40,6 +41,7 @@ RESERVED_WORDS = frozenset().union(*(language.reserved for language in LANGUAGES
 LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
 
 
+@public
 def export(
     solution: QuasiPeriodic | LindstedtSeries,
     language: str,
@@ -90,11 +92,12 @@ def export(
         "made by": command or _call(solution, language, file, options),
     }
     if isinstance(solution, LindstedtSeries):
+        require_series(solution)
         facts |= series_facts(solution, **orders)
         series = series_program(solution, file.stem, facts, **options)
         source = chosen.series(series)
     else:
-        require_solution(solution, "solution")
+        require_fixed_solution(solution, "solution")
         _refuse_options(options)
         facts |= _orders(solution) | torus_facts(solution)
         torus = torus_program(solution, file.stem, facts)

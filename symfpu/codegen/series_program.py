@@ -77,13 +77,15 @@ def series_program(
     order: int | None = None,
     frequency_order: int | None = None,
     derivatives: bool = False,
+    straight_line: int = STRAIGHT_LINE,
 ) -> SeriesProgram:
     """Order the numbers of a series for code; facts come first in the header.
 
     order : of the coordinates, frequency_order : of the frequencies; each at most series.order,
     which is the default. derivatives : of a universal series, by the frequencies; it then becomes
-    tables however small it is. Raises InputError for orders out of range, a series of residues,
-    derivatives of a series with chosen frequencies, and tables too large for a file.
+    tables however small it is. straight_line : of a numeric series, the most operations that
+    become statements; more become tables. Raises InputError for orders out of range, a series of
+    residues, derivatives of a series with chosen frequencies, and tables too large for a file.
     """
     cuts = _cuts(series, order, frequency_order)
     _refuse_residues(series)
@@ -91,7 +93,7 @@ def series_program(
         forms = _universal(series, cuts, derivatives=derivatives)
     else:
         _refuse_derivatives(derivatives)
-        forms = _numeric(series, cuts)
+        forms = _numeric(series, cuts, straight_line)
     return SeriesProgram(
         name=name,
         facts={**facts, **forms.facts},
@@ -174,10 +176,10 @@ def _universal(series: LindstedtSeries, cuts: Cuts, *, derivatives: bool) -> For
     return Forms(facts, None, tables, check, operations, slope_check(known, cuts, check))
 
 
-def _numeric(series: LindstedtSeries, cuts: Cuts) -> Forms:
+def _numeric(series: LindstedtSeries, cuts: Cuts, straight_line: int) -> Forms:
     """Tables, or statements where these are short; angles turn with other frequencies."""
     tables = series_tables(series, *cuts)
-    straight = _short_statements(series, tables, cuts[0])
+    straight = _short_statements(series, tables, cuts[0], straight_line)
     rates = []
     for i, w in enumerate(series.frequencies or ()):
         shift = (i + 1) / 1024
@@ -195,14 +197,15 @@ def _short_statements(
     series: LindstedtSeries,
     tables: SeriesTables,
     order: int,
+    most: int,
 ) -> StraightLine | None:
-    """Statements of at most STRAIGHT_LINE operations, or None."""
+    """Statements of at most so many operations, or None."""
     least = 2 * tables.coefficient_count  # a product and a sum each
-    if least > STRAIGHT_LINE:
+    if least > most:
         return None
     frequencies = frequency_polynomials(tables, series.digits)
     straight = numeric_statements(series, order, tables.scales, frequencies)
-    return straight if straight.operations <= STRAIGHT_LINE else None
+    return straight if straight.operations <= most else None
 
 
 def _near_linear(

@@ -203,7 +203,7 @@ def _check(torus: QuasiPeriodic) -> Check:
     places = DOUBLE_DIGITS if torus.digits is None else torus.digits
     exact = replace_digits(torus, places + EXTRA_DIGITS)
     times = _check_times(torus)
-    Q, P = exact.positions(times), exact.momenta(times)
+    Q, P = exact.Q(times), exact.P(times)
     with MULTIPRECISION.context(places + EXTRA_DIGITS):
         H = exact.chain.energy(Q, P)
     positions = texts(Q, places + 2)

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from numbers import Real
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,6 +41,7 @@ from symfpu.dynamics.tangent import MovingFrame, moving_frame, step_length
 from symfpu.dynamics.wells import require_within_walls
 from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path, digest, seconds_between
+from symfpu.files.locking import one_run
 from symfpu.files.progress import Progress, unheard
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
@@ -47,7 +49,8 @@ from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.counted import counted
-from symfpu.numbers.typed import integer
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import integer, random_seed
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -73,6 +76,7 @@ class Slope:
         return f"GALI_{self.k}: {self.value:.2f} +- {self.error:.2f}"
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class AlignmentIndices(Shown, Gridded):
     """log10 GALI_k and Lyapunov exponent of an orbit in time (section 3.2, Fig. 1(e)).
@@ -214,6 +218,7 @@ class AlignmentIndices(Shown, Gridded):
         )
 
 
+@public
 def alignment_indices(
     chain: Chain,
     Q: ArrayLike,
@@ -283,24 +288,25 @@ def alignment_indices(
     count, last = frame_size(n, vectors), _steps(T, h)
     longest = integer(block, "block", 1)
     marks = _marks(last, h, sample_count(samples))
-    drawn, many = integer(seed, "seed", 0), frame_count(frames)
+    drawn, many = random_seed(seed), frame_count(frames)
     require_within_walls(chain, np.asarray(Q, dtype=chain.kind_of_ends.mode_type))
     path = None if file is None else checkpoint_path(file)
-    state = digest(np.array([Q, P], dtype=chain.kind_of_ends.mode_type))
+    kind: Any = chain.kind_of_ends.mode_type
+    state = digest(np.concatenate([np.ravel(np.asarray(part, kind)) for part in (Q, P)]))
+    files = [] if path is None else [_path_of(path, number) for number in range(many)]
     runs = []
     for number in range(many):
         vectors_drawn = _first_frame(chain, count, drawn + number)
         frame = moving_frame(chain, Q, P, *vectors_drawn, h, scheme=integrator)
-        run = FrameRun(frame, marks, h, longest, seconds_between(every))
+        runs.append(FrameRun(frame, marks, h, longest, seconds_between(every)))
         before = _energy_of(frame)
-        if path is not None:
-            made_of = {"start": state, "seed": drawn + number}
-            run.keep_in(_path_of(path, number), made_of)
-        runs.append(run)
     found = []
-    for number, run in enumerate(runs):
-        run.go(_part(progress or unheard, number, many))
-        found.append(_indices(run, before))
+    with one_run(*files):
+        for number, kept in enumerate(files):
+            runs[number].keep_in(kept, {"start": state, "seed": drawn + number})
+        for number, run in enumerate(runs):
+            run.go(_part(progress or unheard, number, many))
+            found.append(_indices(run, before))
     return replace(found[0], others=tuple(found[1:]))
 
 
@@ -341,6 +347,7 @@ def _part(progress: Progress, i: int, many: int) -> Progress:
     return lambda label, fraction: progress(f"{name}, {label}", (i + fraction) / many)
 
 
+@public
 def seconds_needed(
     chain: Chain,
     T: float,

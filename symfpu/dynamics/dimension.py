@@ -62,6 +62,9 @@ class TorusDimension:
     supported: int | None = None
     frames: tuple[int | None, ...] = field(default=(None,), repr=False)
 
+    def __repr__(self) -> str:
+        return f"TorusDimension({self.verdict}: {self.reason})"
+
 
 @dataclass(frozen=True, eq=False)
 class Evidence:

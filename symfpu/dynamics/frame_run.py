@@ -84,13 +84,11 @@ class FrameRun:
     def keep_in(self, path: Path, start: Json) -> None:
         """Goes on from the file, if there is one, which may hold a shorter run.
 
-        start : what the first frame was made of, the same on every machine. Files of version 0.1
-        know it by all its digits instead, the last of which are the machine's.
+        start : what the first frame was made of, the same on every machine.
         """
         self.path, frame = path, self.frame
-        chain = frame.chain
         known = {
-            **chain.typed,
+            **frame.chain.typed,
             "vectors": frame.vectors,
             "scheme": frame.scheme.name,
             "step": repr(self.step),
@@ -99,15 +97,11 @@ class FrameRun:
             "block": self.longest,
             "portion": self.portion,
         }
-        state = digest(np.stack([frame.x, frame.p]))
-        vectors = digest(np.stack([frame.dx, frame.dp]))
-        made = known | {"start": state, "first vectors": vectors}
         self.parameters = known | start
-        kept = read_checkpoint(path, self.parameters, ALIGNMENT, made)
+        kept = read_checkpoint(path, self.parameters, ALIGNMENT)
         if kept is None:
             return
         done, arrays = kept
-        arrays.setdefault("sampled", self._known_marks(done))  # not in files of version 0.1
         marks = marks_of(path, arrays["sampled"], done, self.marks, exact=False)
         self._sample_at(marks)
         block = arrays.pop("block", np.zeros(0))
@@ -210,10 +204,12 @@ def carried(
 ) -> int:
     """Moves a frame and the product of its factors; returns the block to go on with."""
     # lazy: numba takes longer to import than all the rest
+    from symfpu.chain.bond_loops import run_loop
     from symfpu.dynamics.tangent_loops import carry_frame
 
     product = columns, diagonal, norms
-    return int(carry_frame(*frame.arguments(), steps, block, longest, *product))
+    arguments = *frame.arguments(), steps, block, longest, *product
+    return int(run_loop(carry_frame, frame.law, *arguments))
 
 
 def seconds_a_step(frame: MovingFrame, block: int) -> float:

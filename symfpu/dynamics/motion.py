@@ -101,7 +101,7 @@ class Motion:
     def move(self, row: Floats, bounds: Floats, steps: int) -> int:
         """Moves one orbit."""
         loop, _ = self._loops()
-        return int(loop(*self._arguments(row, bounds, steps)))
+        return self._run(loop, *self._arguments(row, bounds, steps))
 
     def _moved(self, rows: Floats, bounds: Floats, steps: int) -> list[int]:
         """Moves orbits of one part.
@@ -146,7 +146,13 @@ class Motion:
 
     def _look(self, row: Floats, bounds: Floats, stride: int, seen: Floats) -> int:
         _, loop = self._loops()
-        return int(loop(*self._arguments(row, bounds, stride), seen))
+        return self._run(loop, *self._arguments(row, bounds, stride), seen)
+
+    def _run(self, loop: Any, *arguments: Any) -> int:
+        # lazy: numba takes longer to import than all the rest
+        from symfpu.chain.bond_loops import run_loop
+
+        return int(run_loop(loop, self.law, *arguments))
 
     def _loops(self) -> tuple[Any, Any]:
         """The loop that moves one orbit, and the one that looks at it."""

@@ -137,13 +137,14 @@ class _Ensemble:
         )
 
     def _move(self, steps: int) -> None:
+        from symfpu.chain.bond_loops import run_loop
         from symfpu.dynamics.ensemble_loops import move_ensemble
 
         law, schedule = self.chain.law(), BLANES_MOAN6.merged(self.step)
         block = math.ceil(LONGEST_BLOCK / self.step)
         while steps > 0:
             now = min(steps, block)
-            move_ensemble(*self.lanes, law, now, *schedule)
+            run_loop(move_ensemble, law, *self.lanes, law, now, *schedule)
             self._shorten()
             steps -= now
 
@@ -163,11 +164,11 @@ class _Ensemble:
         return np.asarray(((stretches >= least) & (stretches <= most)).all(axis=0))
 
     def _look_at_energy(self, counted: Flags) -> None:
-        x, p = (lanes[1:-1].T for lanes in self.lanes[:2])
-        with np.errstate(all="ignore"):
-            now = np.asarray(self.chain.energy(self.chain.modes(x), self.chain.modes(p)))
-            error = np.abs(now / self.energies - 1)
-        self.error = np.where(counted, np.fmax(self.error, error), self.error)
+        """Of the lanes that count; an orbit that has left its bonds may be no number any more."""
+        x, p = (lanes[1:-1].T[counted] for lanes in self.lanes[:2])
+        now = np.asarray(self.chain.energy(self.chain.modes(x), self.chain.modes(p)))
+        error = np.abs(now / self.energies[counted] - 1)
+        self.error[counted] = np.fmax(self.error[counted], error)
 
 
 def _in_lanes(chain: Chain, rows: Numbers) -> Floats:

@@ -54,12 +54,15 @@ from symfpu.files.checkpoint import (
     write_checkpoint,
 )
 from symfpu.files.interruption import kept_run
+from symfpu.files.locking import one_run
 from symfpu.files.progress import Progress, unheard
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
-from symfpu.numbers.arithmetic import Numbers
+from symfpu.numbers.arithmetic import DOUBLES, Numbers
+from symfpu.numbers.public import public
+from symfpu.numbers.room import require_room
 from symfpu.numbers.typed import double, integer
 
 Floats = NDArray[np.float64]
@@ -69,8 +72,10 @@ Ints = NDArray[np.int64]
 BLOCK = 50_000_000
 MOST_STEPS = 2**52
 STEP_ROUNDING = 1e-9  # of a step: a time that is a multiple of the step but for rounding
+SAMPLE_BYTES = 100  # of a sample beside its modes
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Orbit(Shown, Gridded):
     """An orbit, or several, at sampled times. Made by `integrate`; dimensionless.
@@ -164,6 +169,7 @@ class Orbit(Shown, Gridded):
         )
 
 
+@public
 def integrate(
     chain: Chain,
     Q: ArrayLike,
@@ -223,14 +229,15 @@ def integrate(
         raise InputError("averages", averages, "True or False", "leave it out")
     stride = steps_between_looks(step, _look(look)) if averages else 1
     looks = _whole_steps(T, step * stride)
-    marks = stride * _sample_steps(T, looks, samples)
+    marks = stride * _sample_steps(T, looks, samples, np.size(Q))
     run = _Run(chain, found, T, looks * stride, marks, Q, P, workers)
     if averages:
         run.take_averages(stride)
     seconds = seconds_between(every)
-    if file is not None:
-        run.keep_in(checkpoint_path(file), seconds, exact=not _is_count(samples))
-    with ThreadPoolExecutor(workers) as pool:
+    path = None if file is None else checkpoint_path(file)
+    with one_run(path), ThreadPoolExecutor(workers) as pool:
+        if path is not None:
+            run.keep_in(path, seconds, exact=not _is_count(samples))
         run.go(
             map if workers == 1 or run.orbits == 1 else pool.map,
             progress or unheard,
@@ -317,7 +324,6 @@ class _Run:
         if kept is None:
             return
         self.done, arrays = kept
-        arrays.setdefault("sampled", self._known_marks())  # not in files of version 0.1
         marks = marks_of(path, arrays["sampled"], self.done, self.sampled, exact=exact)
         self._sample_at(marks)
         room = self._kept()
@@ -511,15 +517,16 @@ def _is_count(samples: object) -> TypeGuard[int]:
     return isinstance(samples, (bool, int, np.integer))
 
 
-def _sample_steps(T: float, steps: int, samples: object) -> Ints:
+def _sample_steps(T: float, steps: int, samples: object, modes: int) -> Ints:
     """Steps after which samples are taken, 0 and the last among them."""
     allowed = "a whole number, or times between 0 and T"
     if _is_count(samples):
         count = min(integer(samples, "samples", 1), steps)
+        require_room("samples", count, lambda count: (SAMPLE_BYTES + 24 * modes) * count)
         inner = np.rint(np.geomspace(1, steps, count)) if count > 1 else np.array([steps])
     else:
         try:
-            inner = np.rint(np.asarray(samples, dtype=np.float64) / T * steps)
+            inner = np.rint(DOUBLES.array(samples) / T * steps)
         except (TypeError, ValueError) as error:
             raise InputError("samples", samples, allowed, "pass one of them") from error
         if inner.ndim != 1 or not ((inner >= 0) & (inner <= steps)).all():

@@ -14,7 +14,8 @@ from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.dynamics.wells import beyond_walls
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers
-from symfpu.numbers.typed import Number, double, integer
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, double, random_seed
 
 Floats = NDArray[np.float64]
 State = tuple[Numbers, Numbers]
@@ -26,6 +27,7 @@ LARGEST_ERROR = 1e-12  # of the energy, relative
 DRIFT = 1e-12  # sum of the momenta over the sum of their sizes, that rounding may leave
 
 
+@public
 def random_state(chain: Chain, energy: Number, seed: int) -> State:
     """A random state (Q, P) with the energy H; all directions of the linear chain are alike.
 
@@ -44,13 +46,14 @@ def random_state(chain: Chain, energy: Number, seed: int) -> State:
     """
     chain = require_any_chain(chain)
     target = _positive(energy)
-    generator = np.random.default_rng(integer(seed, "seed", 0))
+    generator = np.random.default_rng(random_seed(seed))
     kind = chain.kind_of_ends
     x, p = generator.standard_normal((2, kind.particles))
     Q = chain.modes(x) / chain.frequencies()
     return _scaled(chain, Q, chain.modes(p), target)
 
 
+@public
 def packet_state(
     chain: Chain,
     seeds: Sequence[int],
@@ -96,6 +99,7 @@ def packet_state(
     return _scaled(chain, Q, P, _positive(energy))
 
 
+@public
 def particle_state(chain: Chain, displacements: ArrayLike, momenta: ArrayLike) -> State:
     """The state (Q, P) of particles in real space (Eq. lintra inverted).
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import zipfile
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from numpy.typing import NDArray
 from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.dynamics.starts import State, particle_state
 from symfpu.errors import InputError
+from symfpu.files.writing import open_to_read
+from symfpu.numbers.public import public
 
 Floats = NDArray[np.float64]
 
@@ -18,6 +21,7 @@ NAMES = ("x", "p")  # of the columns and of the arrays
 FORMATS = "two columns x and p of text, or an .npz with the arrays x and p"
 
 
+@public
 def read_state(chain: Chain, path: Path | str) -> State:
     """The state (Q, P) of particles in a file, as `particle_state` makes it.
 
@@ -52,8 +56,10 @@ def read_state(chain: Chain, path: Path | str) -> State:
 
 def _arrays(file: Path) -> tuple[Floats, Floats]:
     """Those of an archive of NumPy; nothing in it is executed."""
+    with open_to_read(file, "state") as stream:
+        content = io.BytesIO(stream.read())
     try:
-        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
+        with np.load(content, allow_pickle=False) as archive:
             x, p = (np.asarray(archive[name], dtype=np.float64) for name in NAMES)
     except (KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
         reason = " ".join(str(error).split())[:80]
@@ -63,7 +69,8 @@ def _arrays(file: Path) -> tuple[Floats, Floats]:
 
 def _columns(file: Path) -> tuple[Floats, Floats]:
     try:
-        lines = file.read_text(encoding="utf-8-sig").splitlines()
+        with open_to_read(file, "state") as stream:
+            lines = stream.read().decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
         raise _refused(file, "that is no text") from error
     rows: list[tuple[float, float]] = []

@@ -101,11 +101,12 @@ def tangent_steps(
     array([[0.990017]])
     """
     # lazy: numba takes longer to import than all the rest
+    from symfpu.chain.bond_loops import run_loop
     from symfpu.dynamics.tangent_loops import advance
 
     frame = moving_frame(chain, Q, P, dQ, dP, step, scheme=scheme)
     count = integer(steps, "steps", 0)
-    advance(*frame.arguments(), count)
+    run_loop(advance, frame.law, *frame.arguments(), count)
     return *frame.orbit(), *frame.deviations()
 
 

@@ -49,7 +49,8 @@ class Side:
         return self.sign * self.end if self.end < LARGEST_STRETCH else None
 
     def V(self, distance: float) -> float:
-        return float(bonds.potential(self.law, self.sign * distance))
+        # numbers of NumPy: powers of Python's own raise where they are too large
+        return float(bonds.potential(self.law, np.float64(self.sign * distance)))
 
     @cached_property
     def depth(self) -> float:
@@ -222,10 +223,10 @@ def _crossing(
     function: Function, law: bonds.Law, sign: float, low: float, high: float
 ) -> tuple[float, bool]:
     """Where between two distances the sign changes, and whether through zero, not at a pole."""
-    before = float(function(law, sign * low))
+    before = float(function(law, np.float64(sign * low)))
 
     def value(distance: float) -> float:
-        return float(function(law, sign * distance)) / before
+        return float(function(law, np.float64(sign * distance))) / before
 
     there = _first(lambda distance: not value(distance) > 0, low, high)
     return there, abs(value(there)) < 1

@@ -35,10 +35,10 @@ from symfpu.errors import (
     SymfpuError,
     UndeterminedAmplitudes,
 )
-from symfpu.families.continuation import Level
+from symfpu.families.members import Level
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.counted import counted
-from symfpu.numbers.typed import Number, exact, integer, seed_modes
+from symfpu.numbers.typed import Number, double, integer, seed_modes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import root_squares, shifts, solve_amplitudes
 from symfpu.tori.broyden import NotFound
@@ -218,7 +218,7 @@ def appendix_a_members(
             f"an amplitude for each of the seeds {modes}",
             "name every seed once",
         )
-    step = None if increment is None else float(exact(increment, "increment"))
+    step = None if increment is None else double(increment, "increment")
     if step is not None and not 0 < step < np.inf:
         raise InputError(
             "increment",

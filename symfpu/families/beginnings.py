@@ -2,35 +2,35 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 import mpmath
 import numpy as np
 
+from symfpu.breathers.from_rest import FIRST_SHIFT, FIRST_STRETCH
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import SymfpuError
-from symfpu.families.continuation import Level, Member
 from symfpu.families.extrapolation import (
-    FamilyTorus,
     coefficients_at,
-    coefficients_of,
 )
+from symfpu.families.members import Level, Member, linear_by_mode
 from symfpu.files.progress import Progress
 from symfpu.numbers.arithmetic import text
+from symfpu.numbers.long_doubles import DIGITS
 from symfpu.refinement.conditions import Amplitude, Condition, ratio_conditions
-from symfpu.refinement.invariance import DIGITS
-from symfpu.refinement.refined_torus import TOLERANCE, NoTorus, refined_torus
+from symfpu.refinement.refined_torus import TOLERANCE, NoTorus, RefinedTorus, refined_torus
 from symfpu.refinement.tori import refine_at_amplitudes
 from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.ring_torus import RingTorus
-from symfpu.tori.short_waves import short_waves
+from symfpu.tori.short_waves import shifts_by_squares, short_waves
 from symfpu.tori.torus import QTorus
 
 GUESS_ORDER = 2  # of the series that begins a family
 # relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
 GUESS_CHANGE = 0.3
+LOWERED = Fraction(1, 1000)  # of a first energy that is not below the goal
 
 
 def first_torus(
@@ -40,13 +40,13 @@ def first_torus(
     energy_ratio: Mapping[int, float] | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> FamilyTorus:
+) -> RefinedTorus:
     """The torus with these small amplitudes, from a short series about the lowest frequency shift.
 
     energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed
     is as given.
     """
-    guess = _short_series(chain, amplitudes)
+    guess = short_series(chain, amplitudes)
     if energy_ratio is None:
         return refine_at_amplitudes(
             guess, amplitudes, tolerance=tolerance, progress=progress
@@ -64,13 +64,13 @@ def first_at(
     *,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> FamilyTorus:
+) -> RefinedTorus:
     """The torus of an energy near the linear limit, from a short series with about its amplitudes.
 
     ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found
     are far from those of the series: a torus of another family may have the energy.
     """
-    guess = _short_series(chain, amplitudes)
+    guess = short_series(chain, amplitudes)
     conditions = [level.condition, *ratio]
     found = refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
     astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
@@ -81,7 +81,36 @@ def first_at(
     return found
 
 
-def _short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus | RingTorus:
+def first_energy(chain: Chain, amplitudes: Mapping[int, float], goal: Fraction) -> Fraction:
+    """Where a family begins by default: where tori are still near the linear limit.
+
+    amplitudes : of the ratio that is followed. The energy of the linear chain, to two digits, at
+    which a frequency is shifted by FIRST_SHIFT of itself or a bond may be stretched by
+    FIRST_STRETCH. It does not depend on the goal, but that it is lowered a thousandfold, as often
+    as needed, to lie below.
+
+    Raises ResonantDivisor on a ring with a resonance of the lowest order.
+    """
+    linear = linear_by_mode(chain, amplitudes)
+    sizes = np.array(list(amplitudes.values()))
+    if chain.periodic:
+        shifts = shifts_by_squares(chain, tuple(amplitudes)) @ sizes**2
+    else:
+        shifts = np.array(list(frequency_shift(chain, amplitudes).values()))
+    rates = np.array(list(linear.values()))
+    relative = float(np.max(np.abs(shifts) / rates))
+    stretch = math.sqrt(2 / chain.N) * float(rates @ np.abs(sizes))
+    square = (FIRST_STRETCH / stretch) ** 2
+    if relative:
+        square = min(square, FIRST_SHIFT / relative)
+    energy = square * float(np.sum((rates * sizes) ** 2)) / 2
+    first = Fraction(f"{energy:.1e}")
+    while first >= goal:
+        first *= LOWERED
+    return first
+
+
+def short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
     """The series of lowest orders about the frequencies that these amplitudes shift."""
     if chain.periodic:
         return short_waves(chain, amplitudes, GUESS_ORDER)
@@ -113,7 +142,7 @@ def returned(members: Sequence[Member], *, tolerance: float) -> bool:
         other = first_torus(first.torus.chain, last.amplitudes, tolerance=tolerance)
     except SymfpuError:
         return False
-    harmonics, known = coefficients_of(last.torus)
+    harmonics, known = last.torus.harmonics, last.torus.cosines
     same = coefficients_at(harmonics, other)
     difference = np.abs(known - same).max()
     return bool(difference < np.sqrt(tolerance) * np.abs(same).max())

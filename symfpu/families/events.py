@@ -14,20 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.floquet import floquet
-from symfpu.families.continuation import (
-    Event,
-    Level,
-    Member,
-    Way,
-    member,
-)
-from symfpu.families.extrapolation import FamilyTorus, coefficients_of, extrapolated
+from symfpu.families.breather_walk import stability_between
+from symfpu.families.continuation import Way
+from symfpu.families.extrapolation import extrapolated
+from symfpu.families.members import Event, Level, Member, member
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_way import NormalWay
+from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.refinement.conditions import Crossing
-from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.guesses import shifts_of
-from symfpu.refinement.invariance import DIGITS, long
+from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.refined_torus import NoTorus, RefinedTorus
 
 # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
@@ -38,7 +34,7 @@ LOCATIONS = 8  # the most members spent on it
 MOST_CROSSINGS = 8
 
 
-def quantities(torus: FamilyTorus) -> dict[str, float]:
+def quantities(torus: RefinedTorus) -> dict[str, float]:
     """What may turn along a family: energy, shifts of the frequencies, amplitudes."""
     by_seed = zip(torus.seeds, shifts_of(torus), strict=True)
     shifts = {f"omega_{q}": float(shift) for q, shift in by_seed}
@@ -59,7 +55,7 @@ class _Sign(NamedTuple):
     coefficient: float
 
 
-def _signs(first: FamilyTorus, second: FamilyTorus) -> list[_Sign]:
+def _signs(first: RefinedTorus, second: RefinedTorus) -> list[_Sign]:
     """The divisors of significant coefficients that change their sign between two tori.
 
     They are in the order in which they do so.
@@ -70,7 +66,7 @@ def _signs(first: FamilyTorus, second: FamilyTorus) -> list[_Sign]:
     modes = np.broadcast_to(numbers, earlier_size.shape)
     earlier, later = (_divisors(torus, harmonics, places) for torus in (first, second))
     size = np.maximum(np.abs(earlier_size), np.abs(later_size))
-    largest = np.abs(coefficients_of(second)[1]).max()
+    largest = np.abs(second.cosines).max()
     significant = size / largest > LEAST_COEFFICIENT
     own = _own_harmonics(first, harmonics, modes)
     changed = (earlier * later < 0) & significant & ~own
@@ -85,9 +81,10 @@ def _signs(first: FamilyTorus, second: FamilyTorus) -> list[_Sign]:
     return sorted(found, key=lambda sign: sign.part)
 
 
-def _common(first: FamilyTorus, second: FamilyTorus) -> tuple[Ints, Floats, Floats]:
+def _common(first: RefinedTorus, second: RefinedTorus) -> tuple[Ints, Floats, Floats]:
     """The harmonics that two tori share, (H, s), and coefficients of the one and the other."""
-    (known, earlier), (others, later) = coefficients_of(first), coefficients_of(second)
+    known, earlier = first.harmonics, first.cosines
+    others, later = second.harmonics, second.cosines
     rows = {tuple(nu): i for i, nu in enumerate(known.tolist())}
     of_second = enumerate(map(tuple, others.tolist()))
     pairs = [(rows[nu], j) for j, nu in of_second if nu in rows]
@@ -95,13 +92,13 @@ def _common(first: FamilyTorus, second: FamilyTorus) -> tuple[Ints, Floats, Floa
     return known[i], earlier[i], later[j]
 
 
-def _places(torus: FamilyTorus, harmonics: Ints) -> Ints:
+def _places(torus: RefinedTorus, harmonics: Ints) -> Ints:
     """Of the modes of coefficients among those of the chain, broadcast with (H, C).
 
     Of travelling waves the one mode of each harmonic.
     """
     numbers = np.array(torus.chain.mode_numbers)
-    if isinstance(torus, RefinedTorus):
+    if not torus.travels:
         return np.arange(len(numbers))[None, :]
     waves = harmonics @ np.array(torus.seeds) % torus.chain.N
     place = np.zeros(torus.chain.N, dtype=np.int64)
@@ -109,14 +106,14 @@ def _places(torus: FamilyTorus, harmonics: Ints) -> Ints:
     return np.asarray(place[waves][:, None])
 
 
-def _divisors(torus: FamilyTorus, harmonics: Ints, places: Ints) -> Floats:
+def _divisors(torus: RefinedTorus, harmonics: Ints, places: Ints) -> Floats:
     """|nu.omega| - Omega of the modes; shape (H, C)."""
     omega = np.array([float(w) for w in torus.frequencies])
     rates = np.abs(harmonics @ omega)
     return np.asarray(rates[:, None] - torus.chain.frequencies()[places])
 
 
-def _own_harmonics(torus: FamilyTorus, harmonics: Ints, modes: Ints) -> NDArray[np.bool_]:
+def _own_harmonics(torus: RefinedTorus, harmonics: Ints, modes: Ints) -> NDArray[np.bool_]:
     """Where a seed has its own harmonic; shape (H, C)."""
     single = np.abs(harmonics).sum(axis=1) == 1
     of_seeds = zip(torus.seeds, harmonics.T, strict=True)
@@ -155,14 +152,14 @@ def resonances(way: Way, after: int) -> Iterator[Event]:
         )
 
 
-def _coefficient(torus: FamilyTorus, sign: _Sign) -> float:
+def _coefficient(torus: RefinedTorus, sign: _Sign) -> float:
     """The one under a divisor."""
-    harmonics, table = coefficients_of(torus)
+    harmonics, table = torus.harmonics, torus.cosines
     row = harmonics.tolist().index(list(sign.harmonic))
     return float(table[row, sign.column])
 
 
-def _resonant(way: Way, sign: _Sign) -> FamilyTorus | None:
+def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
     """The torus between the last two on which this divisor is zero.
 
     None where Newton's method does not lead to it.
@@ -210,7 +207,7 @@ def _fold(way: Way, name: str, after: int) -> Event:
     return Event("fold", name, after + (place > 0), float(torus.energy()), value)
 
 
-def _turn(way: Way, measure: Callable[[FamilyTorus], float]) -> tuple[FamilyTorus, float]:
+def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTorus, float]:
     """Where a measure turns, and how far along the way from the middle one of the last three tori.
 
     Newton tori between these, at the vertex of the parabola through the best three of all.
@@ -241,7 +238,7 @@ def _turn(way: Way, measure: Callable[[FamilyTorus], float]) -> tuple[FamilyToru
     return torus, place
 
 
-def crossing(way: Way, goal: Level) -> tuple[int, FamilyTorus] | None:
+def crossing(way: Way, goal: Level) -> tuple[int, RefinedTorus] | None:
     """The torus of the goal where the energy turns between the last three tori.
 
     All of them are below the goal, which the energy passes.
@@ -281,24 +278,36 @@ def stability_change(way: Way, first: Member, second: Member, after: int) -> Eve
     if stable_before == second.multipliers.stable:
         return None
     before, last = way.tori[-2:]
+    if not last.travels:
+        place = stability_between(before, last, stable_before)
+    else:
+        place = _halved(way, stable_before)
+    energy = (first.energy + second.energy) / 2 if place is None else place
+    unstable = second.multipliers if stable_before else first.multipliers
+    change = "begins" if stable_before else "ends"
+    what = f"instability ({', '.join(unstable.instabilities)}) {change}"
+    return Event(
+        "stability", what, after, energy, unstable.largest, interpolated=place is None
+    )
+
+
+def _halved(way: Way, stable_before: bool) -> float | None:
+    """The energy between the last two waves where the stability changes, by halving."""
+    before, last = way.tori[-2:]
     local = way.local(last, before)
     scales = local.scales()
     difference = local.variables(last, scales) - local.variables(before, scales)
-    length = float(np.linalg.norm(difference.astype(float)))
-    low, high, energy = 0.0, -length, first.energy
+    low, high, energy = 0.0, -float(np.linalg.norm(difference.astype(float))), None
     for _ in range(LOCATIONS):
         middle = (low + high) / 2
         try:
             torus = local.at(middle)
         except NoTorus:
             break
-        stable = floquet(torus).stable
         energy = float(torus.energy())
-        low, high = (middle, high) if stable == stable_before else (low, middle)
-    unstable = second.multipliers if stable_before else first.multipliers
-    change = "begins" if stable_before else "ends"
-    what = f"instability ({', '.join(unstable.instabilities)}) {change}"
-    return Event("stability", what, after, energy, unstable.largest)
+        same = floquet(torus).stable == stable_before
+        low, high = (middle, high) if same else (low, middle)
+    return energy
 
 
 def events_between(

@@ -14,13 +14,8 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
-from symfpu.families.continuation import (
-    Event,
-    Level,
-    Member,
-    members_grid,
-)
-from symfpu.families.extrapolation import FamilyTorus, extrapolated, in_doubles
+from symfpu.families.extrapolation import extrapolated
+from symfpu.families.members import Event, Level, Member, members_grid
 from symfpu.families.normal_events import NormalEvent
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
@@ -28,10 +23,11 @@ from symfpu.frames.table import joined
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
-from symfpu.numbers.typed import Number, exact
+from symfpu.numbers.long_doubles import DIGITS, long
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, double, exact
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
-from symfpu.refinement.invariance import DIGITS, long
-from symfpu.refinement.refined_torus import refined_torus
+from symfpu.refinement.refined_torus import RefinedTorus, refined_torus
 from symfpu.refinement.tori import refine_at_energy
 
 # in the order in which they are told, as one and as several
@@ -80,11 +76,11 @@ class Family(Shown, Gridded):
 
     >>> from symfpu import Chain, family
     >>> family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
-    Family(N=8, alpha=0.3, seeds=1, 4 members, H = 0.0005 .. 0.001, no events; it reached the
+    Family(N=8, alpha=0.3, seeds=1, 3 members, H = 0.0005 .. 0.001, no events; it reached the
     energy asked for)
     >>> found = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").to_xarray()
     >>> dict(found.sizes), found.amplitude.dims
-    ({'member': 4, 'seed': 1, 'mode': 7}, ('member', 'seed'))
+    ({'member': 3, 'seed': 1, 'mode': 7}, ('member', 'seed'))
     """
 
     chain: Chain
@@ -143,7 +139,8 @@ class Family(Shown, Gridded):
         return {name: Variable(("event",), *pair) for name, pair in columns.items()}
 
 
-def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> FamilyTorus:
+@public
+def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> RefinedTorus:
     """The torus of a family that has this energy, by Newton's method from the nearest member.
 
     found : the family. energy : an exact number, dimensionless; H, or with `harmonic` sum E_q,
@@ -160,7 +157,7 @@ def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Family
     0.0007
     """
     _require_family(found)
-    value = float(exact(energy, "energy"))
+    value = double(energy, "energy")
     level = Level(value, bool(harmonic))
     known = np.array([level.of_member(m) for m in found.members])
     least, largest = float(known.min()), float(known.max())
@@ -174,9 +171,10 @@ def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Family
     )
 
 
+@public
 def member_at_frequency(
     found: Family, seed: int, frequency: Number
-) -> tuple[FamilyTorus, ...]:
+) -> tuple[RefinedTorus, ...]:
     """The tori of a family on which this seed has this frequency.
 
     One for every pair of neighbouring members with the frequency between them.
@@ -197,6 +195,7 @@ def member_at_frequency(
     if seed not in found.seeds:
         raise InputError("seed", seed, f"one of the seeds {found.seeds}", "name a seed")
     place, omega = found.seeds.index(seed), exact(frequency, "frequency")
+    double(frequency, "frequency")
     known = [m.torus.frequencies[place] for m in found.members]
     least, largest = min(known), max(known)
     if not least <= omega <= largest:
@@ -217,13 +216,13 @@ def _require_family(found: object) -> None:
 
 def _between(
     found: Family, k: int, place: int, omega: Fraction, part: float
-) -> FamilyTorus:
+) -> RefinedTorus:
     """The torus with this frequency, between member k and the next, near the given part."""
     seed = found.seeds[place]
     with mpmath.workdps(2 * DIGITS):
         exact_omega = mpmath.mpf(omega.numerator) / omega.denominator
         shift = long(exact_omega - found.chain.linear_frequency(seed))
-    first, second = (in_doubles(m.torus) for m in found.members[k : k + 2])
+    first, second = (m.torus.in_doubles() for m in found.members[k : k + 2])
     energies = found.energy_ratio is not None
     ratio = found.energy_ratio or found.members[k].amplitudes
     conditions = [

@@ -5,9 +5,9 @@ They are kept in memory, and in a folder if there is one.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
 from pathlib import Path
@@ -16,8 +16,9 @@ from typing import Any
 from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.families.continuation import (
-    FIRST_STEP,
+from symfpu.families.beginnings import first_energy
+from symfpu.families.continuation import FIRST_STEP
+from symfpu.families.members import (
     Event,
     Level,
     Member,
@@ -25,7 +26,6 @@ from symfpu.families.continuation import (
     member,
     series_member,
 )
-from symfpu.families.extrapolation import FamilyTorus
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_folder import (
     event_entry,
@@ -37,14 +37,17 @@ from symfpu.families.normal_folder import (
     write_modes,
 )
 from symfpu.families.normal_way import NormalWay
+from symfpu.files.locking import one_run
 from symfpu.files.progress import Progress
-from symfpu.files.writing import write_text
+from symfpu.files.sealed import document_in, read_bytes, write_sealed
+from symfpu.files.writing import made_folder
 from symfpu.normal.frequencies import NormalFrequencies
-from symfpu.numbers.typed import Number, exact, integer
+from symfpu.numbers.typed import Number, double, exact, integer
+from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.tori.torus import QTorus
 
 Json = dict[str, Any]
-BEGINNING = "1/1000"  # of the energy asked for, where a family begins by default
+BEGINNING = "1/1000"  # of the energy asked for, where breathers begin by default
 # energies whose doubles are neither 0 nor infinite
 SMALLEST, LARGEST = Fraction(1, 10**300), 10**300
 RECORD = "family.json"
@@ -132,7 +135,7 @@ def checked_family(
 ) -> Plan:
     """The arguments of `family`, checked; normal : as of the Plan."""
     chosen = tuple(sorted(chain.seeds_of(seeds)))
-    first, goal = _checked_energies(from_energy, to_energy, order)
+    goal = exact(to_energy, "to_energy")
     if amplitude_ratio is not None and energy_ratio is not None:
         allowed = "only one of amplitude_ratio and energy_ratio"
         raise InputError("energy_ratio", dict(energy_ratio), allowed, "leave one out")
@@ -150,6 +153,11 @@ def checked_family(
     if amplitude_ratio is None:
         shares = {q: _share_of_seed(chain, q) for q in chosen}
         weights = {q: math.sqrt(x / shares[q]) / linear[q] for q, x in ratio.items()}
+    if from_energy is None:
+        first = _default_first(chain, weights, goal, order)
+    else:
+        first = exact(from_energy, "from_energy")
+    _require_energies(first, goal, from_energy, to_energy)
     energy = sum((linear[q] * w) ** 2 / 2 for q, w in weights.items())
     scale = math.sqrt(float(first) / energy)
     start = {q: w * scale for q, w in weights.items()}
@@ -190,17 +198,24 @@ def _require_free(ratio: dict[int, float]) -> None:
         raise InputError("amplitude_ratio", ratio, allowed, advice)
 
 
-def _checked_energies(
-    from_energy: Number | None, to_energy: Number, order: int | None
-) -> tuple[Fraction, Fraction]:
-    """The first energy and the last, exact; order : None unless by Appendix A."""
-    goal = exact(to_energy, "to_energy")
-    if from_energy is None:
-        first = goal * exact(BEGINNING if order is None else APPENDIX_BEGINNING, "")
-    else:
-        first = exact(from_energy, "from_energy")
+def _default_first(
+    chain: Chain, weights: Mapping[int, float], goal: Fraction, order: int | None
+) -> Fraction:
+    """The first energy where none is asked for; weights : amplitudes in the ratio followed."""
+    if order is not None:
+        return goal * Fraction(APPENDIX_BEGINNING)
+    one_walk = len(weights) == 1 and not chain.periodic
+    if one_walk or not 0 < goal < LARGEST:
+        return goal * Fraction(BEGINNING)
+    return first_energy(chain, weights, goal)
+
+
+def _require_energies(
+    first: Fraction, goal: Fraction, from_energy: Number | None, to_energy: Number
+) -> None:
+    """InputError unless the first energy is below the last, both in the range of doubles."""
     if 0 < goal < LARGEST and SMALLEST < first < goal:
-        return first, goal
+        return
     argument, value = "to_energy", to_energy
     if from_energy is not None and 0 < goal < LARGEST:
         argument, value = "from_energy", from_energy
@@ -218,7 +233,7 @@ def _checked_ratio(
     if not complete or not all(exact(x, name) > 0 for x in ratio.values()):
         allowed = f"a positive number for each of the seeds {seeds}"
         raise InputError(name, ratio, allowed, "complete it")
-    return {q: float(exact(ratio[q], name)) for q in seeds}
+    return {q: double(ratio[q], name) for q in seeds}
 
 
 def _seeds(described: Json) -> tuple[int, ...]:
@@ -238,23 +253,25 @@ class Kept:
         length = plan.normal
         self.normal = None if length is None else NormalWay(length, progress)
         self.step, self.largest = FIRST_STEP, 0.0
-        if folder is not None:
+        self._held = ExitStack()  # the lock of the folder
+        if folder is None:
+            return
+        with ExitStack() as held:
+            made = made_folder(folder, "folder")
+            held.enter_context(one_run(made, run="family", argument="folder"))
             self._read(folder)
+            self._held = held.pop_all()
+
+    def end(self) -> None:
+        """Nothing more is kept: another run may go on from the folder."""
+        self._held.close()
 
     def _read(self, folder: Path) -> None:
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(
-                "folder",
-                str(folder),
-                "a folder that can be written",
-                f"choose another ({error.strerror})",
-            ) from error
         if not (folder / RECORD).exists():
             return
+        content = read_bytes(folder / RECORD, "folder")
         try:
-            record = json.loads((folder / RECORD).read_text())
+            record = document_in(content)
             plan, events, count = record["plan"], record["events"], int(record["members"])
             self.step, self.largest = float(record["step"]), float(record["largest"])
             start = (
@@ -262,12 +279,8 @@ class Kept:
                 if _seeds(plan) == self.plan.seeds
                 else self.plan.start
             )
-            # records of before resonances were located do not say that they were interpolated
-            known = [
-                {"interpolated": event["kind"] == "resonance"} | event for event in events
-            ]
             self.events = [
-                Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in known
+                Event(**event | {"harmonic": tuple(event["harmonic"])}) for event in events
             ]
             self.events += map(event_from, record.get("normal_events", []))
             entries = record.get("normal") or [None] * count
@@ -276,7 +289,7 @@ class Kept:
                 "folder",
                 str(folder),
                 "a family that symfpu wrote",
-                f"{RECORD} is damaged; choose another folder",
+                f"{RECORD} is damaged, or of an older symfpu; choose another folder",
             ) from error
         if not self.plan.chosen:
             self.plan = replace(self.plan, start=start)
@@ -292,7 +305,7 @@ class Kept:
             )
         for k in range(count):
             torus = self._torus(k)
-            if isinstance(torus, FamilyTorus):
+            if isinstance(torus, RefinedTorus):
                 normal = self._normal(folder, torus, entries[k])
                 multipliers = self.plan.multipliers
                 self.members.append(member(torus, multipliers=multipliers, normal=normal))
@@ -305,16 +318,16 @@ class Kept:
             self.normal.known = [read_modes(folder, int(known_at))]
 
     def _normal(
-        self, folder: Path, torus: FamilyTorus, entry: Json | None
+        self, folder: Path, torus: RefinedTorus, entry: Json | None
     ) -> NormalFrequencies | None:
         """Of a member in the folder; InputError where the record of it is damaged."""
         try:
             return normal_from(entry, torus)
         except (ValueError, KeyError, TypeError, AttributeError) as error:
-            advice = f"{RECORD} is damaged; choose another folder"
+            advice = f"{RECORD} is damaged, or of an older symfpu; choose another folder"
             raise InputError("folder", str(folder), "a family", advice) from error
 
-    def _torus(self, index: int) -> FamilyTorus | QTorus:
+    def _torus(self, index: int) -> RefinedTorus | QTorus:
         """A member that the record counts.
 
         InputError where its file is not there, BundleError where it is damaged.
@@ -329,7 +342,7 @@ class Kept:
             raise InputError("folder", str(self.folder), allowed, advice) from error
         ours = self.plan.chain, self.plan.seeds
         if (
-            not isinstance(torus, FamilyTorus | QTorus)
+            not isinstance(torus, RefinedTorus | QTorus)
             or (torus.chain, torus.seeds) != ours
         ):
             advice = f"{self._file(index).name} is another torus; choose another folder"
@@ -348,14 +361,14 @@ class Kept:
         del self.members[number:]
         self.events = [event for event in self.events if event.after < number - 1]
 
-    def measured(self, torus: FamilyTorus) -> Member:
+    def measured(self, torus: RefinedTorus) -> Member:
         """A torus as the next member, with all that is asked for."""
         normal = self.normal.of(torus) if self.normal else None
         return member(torus, multipliers=self.plan.multipliers, normal=normal)
 
     def add(self, found: Member, events: list[Event | NormalEvent]) -> None:
         """The member first, then the record that counts it: a run may be stopped at any time."""
-        if self.folder is not None and isinstance(found.torus, FamilyTorus | QTorus):
+        if self.folder is not None and isinstance(found.torus, RefinedTorus | QTorus):
             save(
                 self._file(len(self.members)),
                 found.torus,
@@ -372,8 +385,7 @@ class Kept:
                 "events": [asdict(e) for e in self.events if isinstance(e, Event)],
             }
             of_normal = self._normal_record(self.folder)
-            text = json.dumps(record | of_normal, indent=1)
-            write_text(self.folder / RECORD, text + "\n")
+            write_sealed(self.folder / RECORD, record | of_normal)
             if of_normal:
                 forget_modes(self.folder, of_normal["normal_modes_of"])
 

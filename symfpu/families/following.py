@@ -9,6 +9,8 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
+from symfpu.breathers.equations import NoPeriodicOrbit
+from symfpu.breathers.from_rest import BACK_AT_REST
 from symfpu.chain.chain import Chain, require_any_chain, require_chain
 from symfpu.errors import InputError, RunInterrupted, SymfpuError
 from symfpu.families.appendix_a import (
@@ -17,24 +19,20 @@ from symfpu.families.appendix_a import (
     member_at,
     members_between,
 )
-from symfpu.families.beginnings import first_at, returned
-from symfpu.families.continuation import (
-    Event,
-    Level,
-    Member,
-    Way,
-    series_member,
-)
+from symfpu.families.beginnings import first_at, returned, short_series
+from symfpu.families.breather_walk import BreatherWalk
+from symfpu.families.continuation import Way
 from symfpu.families.events import continued, events_between
-from symfpu.families.extrapolation import FamilyTorus
 from symfpu.families.family import Family, NotInFamily
 from symfpu.families.folder import BEGINNING, Kept, Plan, checked_family
+from symfpu.families.members import Event, Level, Member, member, series_member
 from symfpu.families.normal_events import RESONANCE_LENGTH, NormalEvent
 from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.counted import counted
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, integer
 from symfpu.refinement.conditions import ratio_conditions
-from symfpu.refinement.refined_torus import TOLERANCE, NoTorus
+from symfpu.refinement.refined_torus import TOLERANCE, NoTorus, RefinedTorus
 from symfpu.tori.torus import QTorus
 
 SECOND_RATIO = 1.1  # ratio of the amplitudes of the second member and the first
@@ -48,6 +46,7 @@ LOWEST_SHARE = 1e-12  # the part of it that is given up
 APPENDIX_MEMBERS = 20
 
 
+@public
 def family(
     chain: Chain,
     seeds: tuple[int, ...],
@@ -78,9 +77,10 @@ def family(
     amplitude_ratio, energy_ratio : by seed, at most one; energy_ratio is of mode energies
         averaged over the torus. Default equal mode energies. Opposite seeds want an
         amplitude_ratio other than 1: their E_q are one, and waves of equal amplitudes stand.
-    from_energy : of the first member; default a thousandth of the goal, a tenth with
-        'appendix-a', or where the family in the folder began; where the series there lead to no
-        torus it is reached by a family from below.
+    from_energy : of the first member. Default: where the family in the folder began; else for
+        breathers with fixed ends a thousandth of the goal, for other tori an energy that does not
+        depend on the goal, where a frequency is shifted by a thousandth; a tenth of the goal with
+        'appendix-a'. Where the series there lead to no torus it is reached by a family from below.
     members : the most.
     multipliers : of breathers, with changes of stability. normal : normal frequencies of every
         member, each continued from the member before, with the places where they collide and
@@ -94,9 +94,10 @@ def family(
         with other goals too.
     progress : called as (label, fraction done).
 
+    Breathers with fixed ends are the points of the walk from rest, whose steps depend on neither
+    energy. At a resonance it follows the curve, or passes a gap narrower than 1e-3, as an event.
     The last member of a family that reaches its goal has this energy, to 1e-12. Of a folder with
-    members beyond the goal these are left out, and the member at the goal is not kept. Members of a
-    folder that version 0.1 wrote stay as they are: the first one has about from_energy. A family
+    members beyond the goal these are left out, and the member at the goal is not kept. A family
     that cannot be followed to its goal is returned as far as it went; `ending` says where and why
     it ended. One that comes back to the linear limit ends there.
     Raises InputError for arguments out of range and for a folder that holds another family; where
@@ -106,7 +107,7 @@ def family(
 
     >>> tori = family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
     >>> [round(member.energy, 6) for member in tori.members]
-    [0.0005, 0.000605, 0.000772, 0.001]
+    [0.0005, 0.000957, 0.001]
     """
     require_any_chain(chain)
     if method == APPENDIX_A:
@@ -161,6 +162,8 @@ def family(
         raise RunInterrupted(
             f"after {counted(len(kept.members), 'member')}", str(kept.folder)
         ) from stop
+    finally:
+        kept.end()
 
 
 def _by_arclength(
@@ -168,8 +171,10 @@ def _by_arclength(
 ) -> Family:
     """Newton's method and pseudo-arclength continuation, gone on with from the members there are.
 
-    lower : as for `_begun`.
+    lower : as for `_begun`. Breathers of fixed ends are the points of one walk.
     """
+    if len(plan.seeds) == 1 and not plan.chain.periodic:
+        return _by_walk(plan, kept, progress)
     if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
 
         def at_goal(k: int) -> Member:
@@ -198,11 +203,69 @@ def _by_arclength(
     return _family(plan, kept.members, kept.events, why)
 
 
+def _by_walk(plan: Plan, kept: Kept, progress: Progress) -> Family:
+    """The points of the walk from rest, whose places depend on neither end of the family."""
+    walk = _walk(plan, progress)
+
+    def at_goal(k: int) -> Member:
+        [(torus, _)] = itertools.islice(walk.after(_refined(kept.members)[k - 1]), 1)
+        return kept.measured(torus)
+
+    if any(plan.level.passed(plan.level.of_member(m)) for m in kept.members):
+        return _up_to_goal(plan, kept, at_goal)
+    if not kept.members:
+        kept.add(kept.measured(_first_of(walk, plan)), [])
+    why = _ending(plan, kept)
+    try:
+        for torus, met in () if why else walk.after(_refined(kept.members)[-1]):
+            after = len(kept.members) - 1
+            way = _way(plan, kept, progress, [*_refined(kept.members[-2:]), torus])
+            normal = kept.normal.of(torus, way) if kept.normal else None
+            found = member(torus, multipliers=plan.multipliers, normal=normal)
+            events = events_between(way, kept.members[-1], found, after, kept.normal)
+            kept.add(found, [*(replace(e, after=after) for e in met), *events])
+            if why := _ending(plan, kept):
+                break
+    except NoTorus as end:
+        last = kept.members[-1]
+        why = f"{_turned(kept)}ended at H = {last.energy:.7g}: {end.reason}"
+    return _family(plan, kept.members, kept.events, why)
+
+
+def _walk(plan: Plan, progress: Progress) -> BreatherWalk:
+    """NoTorus where no orbit continues the linear mode."""
+    try:
+        return BreatherWalk(plan, progress)
+    except NoPeriodicOrbit as failure:
+        guess = short_series(plan.chain, plan.start)
+        assert isinstance(guess, QTorus)
+        raise NoTorus(str(failure), guess, guess.residual()) from failure
+
+
+def _first_of(walk: BreatherWalk, plan: Plan) -> RefinedTorus:
+    """The torus of the first energy; NotInFamily where the family has none."""
+    try:
+        return walk.first()
+    except NoPeriodicOrbit as failure:
+        top, turned = walk.reached()
+        ending = f"ended: {failure.reason}"
+        if turned:
+            ending = f"turned at {plan.level.name} = {top:.7g} and {_after_turn(ending)}"
+        level = plan.level.name
+        raise NotInFamily(level, plan.first, (0.0, top), ending) from failure
+
+
+def _after_turn(ending: str) -> str:
+    return "returned to the linear limit" if BACK_AT_REST in ending else ending
+
+
 def _way(
-    plan: Plan, kept: Kept, progress: Progress, tori: Sequence[FamilyTorus] = ()
+    plan: Plan, kept: Kept, progress: Progress, tori: Sequence[RefinedTorus] = ()
 ) -> Way:
     """The way of a family from its last members, or from other tori."""
-    known = tori or [m.torus for m in kept.members[-3:] if isinstance(m.torus, FamilyTorus)]
+    known = tori or [
+        m.torus for m in kept.members[-3:] if isinstance(m.torus, RefinedTorus)
+    ]
     return Way(
         plan.ratio,
         energies=plan.energies,
@@ -257,7 +320,7 @@ def _ended(kept: Kept, end: NoTorus, step: float) -> str:
     """Where and why no further member was found."""
     last = kept.members[-1]
     doubtful = " from a doubtful member" if last.warnings else ""
-    nearest = last.torus.near_resonances[:1] if isinstance(last.torus, FamilyTorus) else ()
+    nearest = last.torus.near_resonances[:1] if isinstance(last.torus, RefinedTorus) else ()
     divisor = "".join(f"; the smallest divisor there is {near!r}" for near in nearest)
     steps = f"with steps along the way down to {step:.1g}{doubtful}{divisor}"
     return f"{_turned(kept)}ended at H = {last.energy:.7g}: {end.reason}, {steps}"
@@ -284,8 +347,8 @@ def _up_to_goal(plan: Plan, kept: Kept, at_goal: Callable[[int], Member]) -> Fam
     return _family(plan, members, events, ENDED_AT_GOAL)
 
 
-def _refined(members: Sequence[Member]) -> list[FamilyTorus]:
-    return [m.torus for m in members if isinstance(m.torus, FamilyTorus)]
+def _refined(members: Sequence[Member]) -> list[RefinedTorus]:
+    return [m.torus for m in members if isinstance(m.torus, RefinedTorus)]
 
 
 def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
@@ -312,7 +375,7 @@ def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
     return why
 
 
-def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[FamilyTorus]:
+def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedTorus]:
     """The torus of the first energy, or the one member there is, and one a little above.
 
     Both are below the goal, or at it.
@@ -321,7 +384,7 @@ def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[FamilyTorus
     begin = Level(plan.first, plan.harmonic)
     known = _refined(kept.members)
 
-    def near_rest(level: Level, amplitudes: Mapping[int, float]) -> FamilyTorus:
+    def near_rest(level: Level, amplitudes: Mapping[int, float]) -> RefinedTorus:
         tolerance = plan.tolerance
         return first_at(
             level, plan.chain, amplitudes, ratio, tolerance=tolerance, progress=progress
@@ -332,10 +395,12 @@ def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[FamilyTorus
     above = Level(min(SECOND_RATIO**2 * energy, plan.goal), plan.harmonic)
     scale = math.sqrt(above.energy / energy)
     raised = {q: scale * a for q, a in first.amplitudes.items()}
-    return [first, near_rest(above, raised)]
+    tori = [first, near_rest(above, raised)]
+    _way(plan, kept, progress, tori).require_neighbours()
+    return tori
 
 
-def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[FamilyTorus], str]:
+def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[RefinedTorus], str]:
     """The torus of the first energy, and the next one, by a family from a small part of it.
 
     With why there is no next one. Raises NotInFamily where that family does not reach the energy.

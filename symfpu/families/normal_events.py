@@ -22,7 +22,6 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from symfpu.action_angle.newton_twist import NoTwist, action_turn
-from symfpu.families.extrapolation import in_doubles
 from symfpu.families.normal_zeros import (
     PLACE,
     SHARE,
@@ -45,10 +44,9 @@ from symfpu.normal.resonances import (
     locked_resonances,
 )
 from symfpu.normal.search import followed_modes
-from symfpu.normal.torus import Solution
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.refined_torus import NoTorus
-from symfpu.tori.ring_torus import amplitudes_by_seed
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 
 STABILITY, RESONANCE = "stability", "resonance"
 RESONANCE_LENGTH = 4  # sum |nu_i| up to which a resonance that is crossed is an event
@@ -112,11 +110,11 @@ class Known(NamedTuple):
 class Curve(Protocol):
     """Tori by their place on a curve; NoTorus where there is none."""
 
-    def torus(self, place: float) -> Solution:
+    def torus(self, place: float) -> QuasiPeriodic:
         """The one at a place."""
         ...
 
-    def met(self, condition: Condition, place: float) -> tuple[float, Solution]:
+    def met(self, condition: Condition, place: float) -> tuple[float, QuasiPeriodic]:
         """The one that meets a condition, by Newton's method from a place; with its own."""
         ...
 
@@ -150,7 +148,7 @@ class Stretch:
         near = min(ends, key=lambda end: abs(end.place - place))
         torus = self._curve.torus(place)
 
-        def between(part: float) -> Solution:
+        def between(part: float) -> QuasiPeriodic:
             return self._curve.torus(near.place + part * (place - near.place))
 
         found, missing = followed_modes(torus, near.modes, modes=modes, between=between)
@@ -185,7 +183,7 @@ class Stretch:
 
     def _met(
         self, condition: NormalCondition, start: float, bracket: Bracket, size: float
-    ) -> tuple[float, float, Solution] | None:
+    ) -> tuple[float, float, QuasiPeriodic] | None:
         """Place, error and torus of a condition by Newton's method, or None.
 
         size : that the condition's value is relative to.
@@ -220,7 +218,7 @@ class Stretch:
         """
 
         def of(place: float) -> float:
-            return action_turn(in_doubles(self._curve.torus(place)))
+            return action_turn(self._curve.torus(place).in_doubles())
 
         low, high = bracket.low, bracket.high
         try:
@@ -288,7 +286,7 @@ class Stretch:
         resonance: ParametricResonance,
         place: float,
         error: float,
-        torus: Solution | None = None,
+        torus: QuasiPeriodic | None = None,
         *,
         distance: float = 0.0,
         begins: bool = False,
@@ -313,8 +311,8 @@ class Stretch:
         return between, (1 - part) * low + part * high
 
 
-def _measured(torus: Solution) -> tuple[dict[int, float], float]:
-    amplitudes = {q: float(a) for q, a in amplitudes_by_seed(torus).items()}
+def _measured(torus: QuasiPeriodic) -> tuple[dict[int, float], float]:
+    amplitudes = {q: float(a) for q, a in amplitudes_of(torus).items()}
     return amplitudes, float(torus.energy())
 
 

@@ -27,9 +27,9 @@ from symfpu.normal.modes import NormalModes
 from symfpu.normal.torus import checked_modes, checked_solution
 from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
-from symfpu.numbers.typed import Number, exact, integer
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, double, integer
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class NormalFamily(Shown, Gridded):
 
     @staticmethod
     def _amplitudes(found: NormalModes) -> dict[int, float]:
-        return {q: float(a) for q, a in amplitudes_by_seed(found.torus).items()}
+        return {q: float(a) for q, a in amplitudes_of(found.torus).items()}
 
     def _grid(self) -> Grid:
         torus = self.members[0].torus
@@ -99,8 +99,9 @@ class NormalFamily(Shown, Gridded):
         )
 
 
+@public
 def normal_family(
-    solution: QuasiPeriodic | RingTorus,
+    solution: QuasiPeriodic,
     amplitudes: Mapping[int, Number],
     *,
     members: int = 9,
@@ -143,9 +144,9 @@ def normal_family(
     kept = KeptLine(
         line.described(chosen, length), None if folder is None else Path(folder)
     )
-    line.take(kept.members)
     tell = progress or unheard
     try:
+        line.take(kept.members)
         for n in range(len(kept.members), count):
             tell(f"torus {n + 1} of {count}", n / count)
             found = line.modes_at(n, chosen, kept.members[-1:])
@@ -155,17 +156,17 @@ def normal_family(
             raise
         done = f"after {len(kept.members)} tori"
         raise RunInterrupted(done, str(kept.folder)) from stop
+    finally:
+        kept.end()
     return NormalFamily(tuple(kept.members), line.parts, tuple(kept.events))
 
 
-def _end(
-    solution: QuasiPeriodic | RingTorus, amplitudes: Mapping[int, Number]
-) -> dict[int, float]:
+def _end(solution: QuasiPeriodic, amplitudes: Mapping[int, Number]) -> dict[int, float]:
     given: object = amplitudes
     if not isinstance(given, Mapping) or set(given) != set(solution.seeds):
         allowed = f"an amplitude for each of the seeds {solution.seeds}"
         raise InputError("amplitudes", given, allowed, "write it as {seed: number}")
-    return {q: float(exact(given[q], f"amplitudes, A_{q}")) for q in solution.seeds}
+    return {q: double(given[q], f"amplitudes, A_{q}") for q in solution.seeds}
 
 
 def _events(

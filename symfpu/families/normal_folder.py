@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,11 +11,13 @@ from symfpu.bundles.tree import read_tree, write_tree
 from symfpu.errors import InputError
 from symfpu.families.normal_events import NormalEvent
 from symfpu.files.archive import BundleError
-from symfpu.files.writing import write_text
+from symfpu.files.locking import one_run
+from symfpu.files.sealed import document_in, read_bytes, write_sealed
+from symfpu.files.writing import made_folder
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_again
 from symfpu.normal.modes import NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.resonances import ParametricResonance
-from symfpu.normal.torus import Solution
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 Json = dict[str, Any]
 RECORD = "line.json"
@@ -67,7 +69,7 @@ def normal_entry(found: NormalFrequencies | None) -> Json | None:
     }
 
 
-def normal_from(entry: Json | None, torus: Solution) -> NormalFrequencies | None:
+def normal_from(entry: Json | None, torus: QuasiPeriodic) -> NormalFrequencies | None:
     """The same again; KeyError, TypeError or ValueError for what is none."""
     if entry is None:
         return None
@@ -105,23 +107,29 @@ class KeptLine:
         self._plan, self.folder = plan, folder
         self.members: list[NormalModes] = []
         self.events: list[NormalEvent] = []
-        if folder is not None:
+        self._held = ExitStack()  # the lock of the folder
+        if folder is None:
+            return
+        with ExitStack() as held:
+            made = made_folder(folder, "folder")
+            held.enter_context(one_run(made, run="line of tori", argument="folder"))
             self._read(folder)
+            self._held = held.pop_all()
+
+    def end(self) -> None:
+        """Nothing more is kept: another run may go on from the folder."""
+        self._held.close()
 
     def _read(self, folder: Path) -> None:
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            allowed, advice = "a folder that can be written", f"another ({error.strerror})"
-            raise InputError("folder", str(folder), allowed, advice) from error
         if not (folder / RECORD).exists():
             return
+        content = read_bytes(folder / RECORD, "folder")
         try:
-            record = json.loads((folder / RECORD).read_text())
+            record = document_in(content)
             plan, count = record["plan"], int(record["members"])
             self.events = [event_from(entry) for entry in record["events"]]
         except (ValueError, KeyError, TypeError, AttributeError) as error:
-            advice = f"{RECORD} is damaged; choose another folder"
+            advice = f"{RECORD} is damaged, or of an older symfpu; choose another folder"
             raise InputError("folder", str(folder), "a line of tori", advice) from error
         keys = dict.fromkeys([*self._plan, *plan])
         if different := [key for key in keys if plan.get(key) != self._plan.get(key)]:
@@ -142,4 +150,4 @@ class KeptLine:
                 "members": len(self.members),
                 "events": events_so_far,
             }
-            write_text(self.folder / RECORD, json.dumps(record, indent=1) + "\n")
+            write_sealed(self.folder / RECORD, record)

@@ -10,16 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.families.extrapolation import extrapolated, in_doubles
-from symfpu.normal.linearised_standing import folded, is_standing
+from symfpu.families.extrapolation import extrapolated
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import Between, followed_modes
-from symfpu.normal.torus import Solution
 from symfpu.refinement.conditions import AmplitudeLine, Condition
 from symfpu.refinement.refined_torus import NoTorus, refined_torus
 from symfpu.refinement.tori import refine_at_amplitudes
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed, unfold
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.unfolding import folded, unfold
 
 HALVINGS = 6  # of a step to a torus that Newton's method does not reach at once
 
@@ -27,15 +25,17 @@ HALVINGS = 6  # of a step to a torus that Newton's method does not reach at once
 class Line:
     """Tori between two sets of amplitudes, by the part of the way."""
 
-    def __init__(self, first: Solution, end: Mapping[int, float], members: int) -> None:
-        self.start = {q: float(a) for q, a in amplitudes_by_seed(first).items()}
+    def __init__(
+        self, first: QuasiPeriodic, end: Mapping[int, float], members: int
+    ) -> None:
+        self.start = {q: float(a) for q, a in amplitudes_of(first).items()}
         self.end = dict(end)
         self.parts = tuple(n / (members - 1) for n in range(members))
         self._chain = first.chain
-        self._stands = isinstance(first, RingTorus) and is_standing(first)
+        self._stands = first.stands
         self._given = first
-        self._known: dict[float, Solution] = {0.0: self._found_as(first)}
-        self._last: dict[float, Solution] = {}
+        self._known: dict[float, QuasiPeriodic] = {0.0: self._found_as(first)}
+        self._last: dict[float, QuasiPeriodic] = {}
 
     def described(self, modes: tuple[int, ...], length: int) -> dict[str, Any]:
         """What two runs of one line have in common."""
@@ -56,29 +56,27 @@ class Line:
         pairs = zip(self.parts, members, strict=False)
         self._known |= {part: self._found_as(known.torus) for part, known in pairs}
 
-    def _found_as(self, torus: Solution) -> Solution:
+    def _found_as(self, torus: QuasiPeriodic) -> QuasiPeriodic:
         """Standing waves as the torus of fixed ends that they unfold."""
         if not self._stands:
             return torus
-        assert isinstance(torus, RingTorus)
         return folded(torus)
 
-    def _given_as(self, torus: Solution) -> Solution:
+    def _given_as(self, torus: QuasiPeriodic) -> QuasiPeriodic:
         """The reverse of it."""
         if not self._stands:
             return torus
-        assert isinstance(torus, QuasiPeriodic)
         return unfold(torus)
 
     def amplitudes(self, part: float) -> dict[int, float]:
         """A_q by seed."""
         return {q: (1 - part) * a + part * self.end[q] for q, a in self.start.items()}
 
-    def torus(self, part: float) -> Solution:
+    def torus(self, part: float) -> QuasiPeriodic:
         """From the nearest one that is known, or by halves of the way to it; raises NoTorus."""
         return self._given if part == 0 else self._given_as(self._torus(part))
 
-    def met(self, condition: Condition, part: float) -> tuple[float, Solution]:
+    def met(self, condition: Condition, part: float) -> tuple[float, QuasiPeriodic]:
         """The one that meets a condition, by Newton's method from a part; with its own."""
         guess: Any = self._torus(part)
         found = refined_torus(guess, [condition, *self._on_the_line()])
@@ -98,18 +96,18 @@ class Line:
         others = [i for i in range(len(steps)) if i != first]
         return [AmplitudeLine((first, i), start, relative) for i in others]
 
-    def _torus(self, part: float) -> Solution:
+    def _torus(self, part: float) -> QuasiPeriodic:
         if part in self._known:
             return self._known[part]
         if part not in self._last:
             self._last[part] = self._reached(part, HALVINGS)
         return self._last[part]
 
-    def _reached(self, part: float, halvings: int) -> Solution:
+    def _reached(self, part: float, halvings: int) -> QuasiPeriodic:
         nearest = min(self._known, key=lambda p: abs(p - part))
         guess: Any = self._guess(part)
         try:
-            found: Solution = refine_at_amplitudes(guess, self.amplitudes(part))
+            found: QuasiPeriodic = refine_at_amplitudes(guess, self.amplitudes(part))
             return found
         except NoTorus:
             if not halvings:
@@ -118,14 +116,14 @@ class Line:
         self._known[middle] = self._reached(middle, halvings - 1)
         return self._reached(part, halvings - 1)
 
-    def _guess(self, part: float) -> Solution:
+    def _guess(self, part: float) -> QuasiPeriodic:
         """On the line through the two nearest, or the nearest."""
         near = sorted(self._known, key=lambda p: abs(p - part))[:2]
         if len(near) == 1:
             return self._known[near[0]]
         last, before = near
         ratio = (part - last) / (last - before)
-        earlier, later = (in_doubles(self._known[p]) for p in (before, last))
+        earlier, later = (self._known[p].in_doubles() for p in (before, last))
         return extrapolated(earlier, later, ratio)
 
     def _before(self, n: int) -> Between | None:

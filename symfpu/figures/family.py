@@ -27,11 +27,7 @@ def draw_family(found: Family, folder: Path, stem: str = "family") -> list[Path]
         panels["multipliers"] = ("Floquet multipliers", family_multipliers)
     if any(m.normal is not None for m in found.members):
         panels["normal"] = ("Normal frequencies", family_normal_frequencies)
-    chain = repr(found.chain)[6:-1]
-    word = "seed" if len(found.seeds) == 1 else "seeds"
-    seeds = ", ".join(map(str, found.seeds))
     drawn = []
     for panel, (title, draw) in panels.items():
-        full_title = f"{title} ({chain}, {word} {seeds})"
-        drawn += save_panel(partial(draw, found), full_title, folder / f"{stem}-{panel}")
+        drawn += save_panel(partial(draw, found), title, folder / f"{stem}-{panel}")
     return drawn

@@ -5,11 +5,9 @@ It is written whole or not at all, and read without trust.
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import json
 import os
-import secrets
 import struct
 import zipfile
 import zlib
@@ -21,14 +19,15 @@ import numpy as np
 import psutil
 from numpy.typing import NDArray
 
-from symfpu.errors import InputError, SymfpuError
+from symfpu.errors import SymfpuError
 from symfpu.files.formats import BUNDLE
+from symfpu.files.writing import write_file
 from symfpu.numbers.typed import integer
 
 Array = NDArray[Any]
 Json = dict[str, Any]
 
-SCHEMA = 6  # the newest that is read; files say the oldest that reads them
+SCHEMA = 7  # of all that is written, and the one that is read
 DOCUMENT = "bundle.json"
 COMPRESSION = 1  # mantissas are noise; the zeros between them are gone at the first level
 CHUNK = 1 << 22
@@ -93,20 +92,8 @@ def member_digest(values: Array) -> str:
 
 
 def write_archive(path: Path, body: Json, members: Mapping[str, Array]) -> None:
-    """Through a temporary file beside it, so that the file is never half written."""
-    draft = path.parent / f".symfpu-{secrets.token_hex(8)}"
-    try:
-        with draft.open("xb") as stream:
-            _write_members(stream, body, members)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(draft, path)
-    except OSError as error:
-        advice = f"choose another ({error.strerror})"
-        raise InputError("path", str(path), "a file that can be written", advice) from error
-    finally:
-        with contextlib.suppress(OSError):
-            draft.unlink(missing_ok=True)
+    """The file whole; InputError where it cannot be written, and it stays as it was."""
+    write_file(path, lambda stream: _write_members(stream, body, members), "path")
 
 
 def write_document(path: Path, body: Json, members: Mapping[str, Array]) -> None:
@@ -176,6 +163,9 @@ class Archive:
                 f"was written by a newer symfpu (schema {schema}; this one reads {SCHEMA})"
             )
             raise BundleError(path, newer, "update symfpu")
+        if schema < SCHEMA:
+            older = f"is of an older format (schema {schema}; this symfpu reads {SCHEMA})"
+            raise BundleError(path, older, "compute it again, and write another file")
         if body.pop("digest") != digest_of(body):
             raise ValueError(f"{DOCUMENT} does not match its digest")
         return body

@@ -18,6 +18,7 @@ from symfpu.errors import InputError
 from symfpu.files.archive import (
     DAMAGE,
     MEMORY_ADVICE,
+    SCHEMA,
     Archive,
     BundleError,
     Json,
@@ -26,12 +27,12 @@ from symfpu.files.archive import (
     write_archive,
 )
 from symfpu.files.formats import ARCHIVE, BUNDLE
+from symfpu.files.writing import open_to_read, regular_file
 from symfpu.numbers.typed import integer
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-CHECKPOINT_SCHEMA = 1
 ADVICE = "name another file, or remove this one"
 # parameters that a longer run, which goes on from a shorter one, has otherwise
 LENGTH = ("steps", "sampled steps")
@@ -41,15 +42,11 @@ ENDS_LEFT_OUT = {
 
 
 class Kind(NamedTuple):
-    """What a checkpoint is of: its name in the file, with its article, and what goes on from it.
-
-    implied : parameters that older files do not name, and what they were.
-    """
+    """What a checkpoint is of: its name in the file, with its article, and what goes on from it."""
 
     name: str
     of: str
     resume: str
-    implied: tuple[tuple[str, str], ...] = ()
 
 
 ORBIT = Kind("orbit", "an orbit", "integrate(..., file=...) or symfpu orbit --checkpoint")
@@ -57,7 +54,6 @@ ALIGNMENT = Kind(
     "alignment indices",
     "alignment indices",
     "alignment_indices(..., file=...) or symfpu gali --checkpoint",
-    implied=(("scheme", "blanes_moan6"),),
 )
 TORUS_DIGITS = Kind(
     "torus with digits",
@@ -79,12 +75,7 @@ def checkpoint_path(file: object) -> Path:
     """
     if not isinstance(file, (str, os.PathLike)):
         raise InputError("file", file, "the name of a file", "pass a string or a Path")
-    path = Path(os.fsdecode(file))
-    folder = path.parent
-    if path.is_dir() or not folder.is_dir() or not os.access(folder, os.W_OK):
-        allowed = "a file in a folder that exists and can be written"
-        raise InputError("file", str(path), allowed, "choose another")
-    return path
+    return regular_file(Path(os.fsdecode(file)), "file", "choose another")
 
 
 def seconds_between(every: object) -> float:
@@ -105,7 +96,7 @@ def write_checkpoint(
         digests[name] = member_digest(members[name])
     body: Json = {
         "format": BUNDLE,
-        "schema": CHECKPOINT_SCHEMA,
+        "schema": SCHEMA,
         "kind": kind.name,
         "parameters": parameters,
         "steps": steps,
@@ -116,29 +107,27 @@ def write_checkpoint(
 
 
 def read_checkpoint(
-    path: Path, parameters: Json, kind: Kind = ORBIT, before: Json | None = None
+    path: Path, parameters: Json, kind: Kind = ORBIT
 ) -> tuple[int, dict[str, Floats]] | None:
     """Steps done and the arrays, or None where there is no file.
 
     The checkpoint may be one of fewer steps in all.
 
-    before : the parameters by which files of version 0.1 know the run, if these are others.
-
     Raises InputError for a checkpoint of other parameters, BundleError for a file that is none.
     """
     if not path.exists():
         return None
-    with path.open("rb") as stream:
+    with open_to_read(path) as stream:
         try:
             if stream.read(len(ARCHIVE)) != ARCHIVE:
                 raise ValueError("it is no archive")
             archive = Archive(path, stream)
             if archive.body.get("kind") != kind.name:
                 raise BundleError(path, f"is not a checkpoint of {kind.of}", ADVICE)
-            _require_same(path, archive.body["parameters"], parameters, kind, before)
+            _require_same(path, archive.body["parameters"], parameters, kind)
             arrays = _arrays(archive)
             if "sampled" not in arrays and "sampled steps" in parameters:
-                _require_same_samples(path, archive.body["parameters"], parameters)
+                raise ValueError("it does not hold where its samples are")
             return integer(archive.body["steps"], "steps", 0), arrays
         except (BundleError, Refused):
             raise
@@ -190,30 +179,14 @@ def marks_of(path: Path, known: Floats, done: int, asked: Ints, *, exact: bool) 
     return np.concatenate([marks, asked[asked > done]])
 
 
-def _require_same_samples(path: Path, found: Json, parameters: Json) -> None:
-    """A file of version 0.1 does not hold where its samples are.
-
-    They are those asked for, or there is no going on from it.
-    """
-    if found["sampled steps"] != parameters["sampled steps"]:
-        length = "a checkpoint of a run of this length"
-        allowed = f"{length} (it is of version 0.1, and goes on to its own end only)"
-        raise Refused("file", str(path), allowed, ADVICE)
-
-
-def _require_same(
-    path: Path, found: Json, parameters: Json, kind: Kind, before: Json | None
-) -> None:
+def _require_same(path: Path, found: Json, parameters: Json, kind: Kind) -> None:
     longer = integer(found["steps"], "steps", 0) < parameters["steps"]
-    known = ENDS_LEFT_OUT | dict(kind.implied) | found
-    asked = parameters if before is None or parameters.keys() <= known.keys() else before
-    for name, value in (ENDS_LEFT_OUT | asked).items():
+    known = ENDS_LEFT_OUT | found
+    for name, value in (ENDS_LEFT_OUT | parameters).items():
         goes_on = longer and name in LENGTH
         if known.get(name) != value and not goes_on:
             was = str(known.get(name))[:40]
             now = str(value)[:40]
             same = f"a checkpoint of the same {kind.name}"
-            if asked is before:
-                same += " from a machine that rounds alike, as it is of version 0.1"
             allowed = f"{same} ({name} is {was} in it, {now} here)"
             raise Refused("file", str(path), allowed, ADVICE)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from symfpu.files.writing import open_to_read
+
 ARCHIVE = b"PK\x03\x04"  # with which an archive begins
 NAMED = re.compile(r'"format":\s*"([^"\\]*)"')
 LONGEST_HEAD = 4096  # bytes in which a file names its format
@@ -19,7 +21,7 @@ OPENED_BY = {
 
 def format_of(path: Path) -> str:
     """The format that the head of a file names, ZIPPED of an archive; "" where it names none."""
-    with path.open("rb") as file:
+    with open_to_read(path) as file:
         head = file.read(LONGEST_HEAD)
     if head.startswith(ARCHIVE):
         return ZIPPED

@@ -1,30 +1,31 @@
 """The file of a long run: a head of one line, then one line of JSON for each entry, as they come.
 
-A line that a dead process left unfinished is cut off; one process at a time writes.
+Every line ends with its checksum. A line that a dead process left unfinished is cut off; one
+process at a time writes.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
+import zlib
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import IO, Any, ClassVar, Self
 
 from symfpu.errors import InputError, SymfpuError
-from symfpu.files.writing import output_file, write_bytes
-
-try:
-    import fcntl
-except ImportError:  # no locks of this kind: the user sees to it that one process writes
-    fcntl = None  # type: ignore[assignment]
+from symfpu.files.locking import one_run
+from symfpu.files.writing import regular_file, write_bytes
 
 Json = dict[str, Any]
 
 NAMED = "name another file, or remove this one"
 DAMAGED = "it is damaged: remove it or name another"
+CHECKSUM = "crc32"  # the last key of every line: CRC-32 of the line without this key
+LINE = re.compile(rb'(\{.*), "crc32": "([0-9a-f]{8})"\}')
 
 
 class FileFull(SymfpuError):
@@ -56,9 +57,10 @@ class KeptLines(ABC):
 
     def __init__(self, path: Path | str | None, head: Json) -> None:
         advice = "choose another"
-        self.path = None if path is None else output_file(Path(path), "file", advice)
+        self.path = None if path is None else regular_file(Path(path), "file", advice)
         self.head = head
         self._stream: IO[bytes] | None = None
+        self._held = ExitStack()  # the lock, and the stream
         self._count = 0
 
     @abstractmethod
@@ -68,12 +70,11 @@ class KeptLines(ABC):
     def __enter__(self) -> Self:
         if self.path is None:
             return self
-        self._stream = _opened(self.path, self.run)
-        try:
+        with ExitStack() as held:
+            held.enter_context(one_run(self.path, run=self.run))
+            self._stream = held.enter_context(_opened(self.path))
             self._begin(self.path, self._stream)
-        except BaseException:
-            self._stream.close()
-            raise
+            self._held = held.pop_all()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -81,12 +82,13 @@ class KeptLines(ABC):
             with suppress(OSError):
                 os.fsync(self._stream.fileno())
             self._stream.close()
+        self._held.close()
 
     def _begin(self, path: Path, stream: IO[bytes]) -> None:
         """Read what is there, cut an unfinished line off, and write the head of a new file."""
         stream.seek(0)
         content = stream.read()
-        first = _line(self.head)
+        first = line_of(self.head)
         if not first.startswith(content):
             self._take_from(path, content)
         whole = content.rfind(b"\n") + 1
@@ -97,8 +99,8 @@ class KeptLines(ABC):
 
     def _take_from(self, path: Path, content: bytes) -> None:
         require_same(path, content, self.head, self.run)
+        entries = entries_of(path, content, self.run)
         try:
-            entries = entries_of(content)
             self.take(entries)
         except (ValueError, KeyError, TypeError) as error:
             raise damaged(path, self.run) from error
@@ -106,7 +108,7 @@ class KeptLines(ABC):
 
     def add(self, entries: Iterable[Json]) -> None:
         """Add entries, all or none of them; FileFull where they find no room."""
-        lines = list(map(_line, entries))
+        lines = list(map(line_of, entries))
         if self._stream is not None:
             self._write(b"".join(lines))
         self._count += len(lines)
@@ -115,9 +117,9 @@ class KeptLines(ABC):
         """Keep these alone: another file in its place, whole or not at all."""
         if self.path is None:
             return
-        lines = list(map(_line, entries))
-        write_bytes(self.path, b"".join([_line(self.head), *lines]))
-        before, self._stream = self._stream, _opened(self.path, self.run)
+        lines = list(map(line_of, entries))
+        write_bytes(self.path, b"".join([line_of(self.head), *lines]))
+        before, self._stream = self._stream, _opened(self.path)
         if before is not None:
             before.close()
         self._count = len(lines)
@@ -137,40 +139,54 @@ class KeptLines(ABC):
             raise FileFull(str(self.path), self._count, reason) from error
 
 
-def _line(entry: Json) -> bytes:
-    return json.dumps(entry).encode() + b"\n"
+def line_of(entry: Json) -> bytes:
+    """An entry, which has a key at least, as a line with its checksum."""
+    alone = json.dumps(entry)
+    checksum = zlib.crc32(alone.encode())
+    return f'{alone[:-1]}, "{CHECKSUM}": "{checksum:08x}"}}\n'.encode()
 
 
-def _opened(path: Path, run: str) -> IO[bytes]:
-    """A file to read and to add to, locked; InputError where there is none."""
+def entry_of(line: bytes) -> Json:
+    """The entry of a line; ValueError where the checksum is not that of the rest."""
+    found = LINE.fullmatch(line)
+    if found is None or zlib.crc32(found[1] + b"}") != int(found[2], 16):
+        raise ValueError("a line that differs from its checksum")
+    entry: Json = json.loads(found[1] + b"}")
+    return entry
+
+
+def _opened(path: Path) -> IO[bytes]:
+    """A file to read and to add to; InputError where there is none."""
     try:
-        stream = path.open("a+b", buffering=0)
+        return path.open("a+b", buffering=0)
     except OSError as error:
         allowed = "a file that can be read and written"
         advice = f"name another ({error.strerror})"
         raise InputError("file", str(path), allowed, advice) from error
-    try:
-        if fcntl is not None:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError as error:
-        stream.close()
-        allowed = "a file that no other process writes"
-        advice = f"wait for the other {run}, or name another file"
-        raise InputError("file", str(path), allowed, advice) from error
-    return stream
 
 
 def head_in(content: bytes) -> Any:
-    """What the first line holds; None where it is no JSON."""
+    """What the first line holds, unchecked and without its checksum; None where it is no JSON."""
     try:
-        return json.loads(content.partition(b"\n")[0])
+        found = json.loads(content.partition(b"\n")[0])
     except ValueError:
         return None
+    if isinstance(found, dict):
+        found.pop(CHECKSUM, None)
+    return found
 
 
-def entries_of(content: bytes) -> list[Json]:
-    """The whole lines after the head; ValueError where one is no JSON."""
-    return [json.loads(line) for line in content.split(b"\n")[1:-1]]
+def entries_of(path: Path, content: bytes, run: str) -> list[Json]:
+    """The whole lines after the head; InputError with the number of one that was changed."""
+    entries = []
+    for number, line in enumerate(content.split(b"\n")[1:-1], start=2):
+        try:
+            entries.append(entry_of(line))
+        except ValueError as error:
+            said = f"line {number} was changed, it differs from its checksum"
+            advice = f"{said}: remove this line, and the same call makes it again"
+            raise InputError("file", str(path), f"rows of a {run}", advice) from error
+    return entries
 
 
 def damaged(path: Path, run: str) -> InputError:
@@ -182,6 +198,7 @@ def require_same(path: Path, content: bytes, head: Json, run: str) -> None:
     """InputError, with what differs, where a file has another head."""
     found = head_in(content)
     if found == head:
+        require_checked_head(path, content, run)
         return
     allowed = f"a new file, or that of this {run}"
     if not isinstance(found, dict) or "format" not in found:
@@ -192,3 +209,12 @@ def require_same(path: Path, content: bytes, head: Json, run: str) -> None:
     differ = [name for name in head if found.get(name) != head[name]]
     others = [f"{name} {found.get(name)!r} and not {head[name]!r}" for name in differ]
     raise InputError("file", str(path), allowed, f"it has {', '.join(others)}: {NAMED}")
+
+
+def require_checked_head(path: Path, content: bytes, run: str) -> None:
+    """InputError where the first line differs from its checksum."""
+    try:
+        entry_of(content.partition(b"\n")[0])
+    except ValueError as error:
+        advice = f"line 1 was changed, it differs from its checksum: {NAMED}"
+        raise InputError("file", str(path), f"the file of a {run}", advice) from error

@@ -5,9 +5,12 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
+from symfpu.numbers.public import public
+
 RECORDS = "symfpu.reports.records"  # the records of results, by their kind
 
 
+@public
 class Recorded:
     """A result with a record of its own.
 

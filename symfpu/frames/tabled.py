@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING
 from symfpu.frames.grid import Grid
 from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Table
+from symfpu.numbers.public import public
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray
 
 
+@public
 class Tabled(Recorded, ABC):
     """A result whose numbers are a table."""
 
@@ -37,6 +39,7 @@ class Tabled(Recorded, ABC):
         return self._table().frame()
 
 
+@public
 class Gridded(Tabled):
     """A result whose numbers are arrays over named axes."""
 

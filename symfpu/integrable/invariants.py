@@ -30,6 +30,7 @@ from symfpu.numbers.arithmetic import (
     Numbers,
     with_digits,
 )
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, integer
 
 MOST_DIGITS = 10000
@@ -82,6 +83,7 @@ class TodaInvariants(Shown, Tabled):
         return Table(columns, attributes(self, N=self.N, a=self.a, digits=self.digits))
 
 
+@public
 def toda_gaps(
     chain: Chain,
     Q: ArrayLike,
@@ -119,6 +121,7 @@ def toda_gaps(
     return with_digits(gaps, digits)
 
 
+@public
 def toda_invariants(
     chain: Chain,
     Q: ArrayLike,
@@ -187,6 +190,8 @@ def _edges(
     """
     if chain.periodic:
         stretches, momenta = chain.stretches(Q), chain.positions(P)
+        if numbers is DOUBLES:  # a state of many digits is rounded, as with fixed ends
+            stretches, momenta = numbers.array(stretches), numbers.array(momenta)
     else:
         stretches = chain.stretches(_read(Q, "Q", numbers))
         momenta = chain.positions(_read(P, "P", numbers))

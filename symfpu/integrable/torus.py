@@ -31,12 +31,14 @@ from symfpu.integrable.discriminant import Edges
 from symfpu.integrable.inverse import ring_state
 from symfpu.integrable.search import Found, Search, guard_digits
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, with_digits
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, exact, integer
 
 MOST_DIGITS = 10000
 SMALLEST_RING = 3  # particles: of two the mean stretch of both bonds is one number
 
 
+@public
 @dataclass(frozen=True)
 class TodaTorus(Tabled):
     """A torus of the Toda chain on which only the gaps of the seeds are open; see `toda_torus`.
@@ -180,6 +182,7 @@ class TodaTorus(Tabled):
         return Table(columns, known)
 
 
+@public
 def toda_torus(
     chain: Chain,
     seeds: Sequence[int],

@@ -22,15 +22,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.digits import PreciseOrbit
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
-from symfpu.chain.tension_terms import highest_product
+from symfpu.numbers.public import public
 from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import canonical_signs, dilated, places_of, told_apart
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.quasiperiodic import QuasiPeriodic, require_fixed_solution
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[Any]
@@ -61,6 +60,7 @@ class _Errors:
         return np.asarray((weights * squared * self.sizes**2).sum(axis=0), dtype=np.float64)
 
 
+@public
 def spectrum_floor(solution: QuasiPeriodic) -> NDArray[np.float64]:
     """The energies at and below which the modes of a torus or breather are rounding; shape (N-1,).
 
@@ -86,6 +86,7 @@ def spectrum_floor(solution: QuasiPeriodic) -> NDArray[np.float64]:
     return errors.energies(solution.chain)
 
 
+@public
 def coefficient_errors(solution: QuasiPeriodic) -> NDArray[np.float64]:
     """How far off the Fourier coefficients of a torus or breather are; shape (H, N-1).
 
@@ -104,13 +105,11 @@ def coefficient_errors(solution: QuasiPeriodic) -> NDArray[np.float64]:
 
 
 def _errors(solution: QuasiPeriodic) -> _Errors:
-    require_solution(solution, "solution")
+    require_fixed_solution(solution, "solution")
     if isinstance(solution, QTorus):
         return _of_series(solution)
-    if isinstance(solution, PreciseOrbit):
-        return _of_digits(solution)
     if isinstance(solution, PreciseTorus):
-        return _of_many_angles(solution)
+        return _of_digits(solution)
     return _of_newton(solution)
 
 
@@ -140,7 +139,11 @@ def _along_the_family(
     """
     lengths = np.abs(harmonics).sum(axis=1)
     degrees = np.maximum(_degrees(chain, seeds), lengths[:, None])
-    return np.asarray(degrees * relative * np.abs(cosines))
+    changes = np.where(cosines == 0, 0.0, degrees * np.abs(cosines))
+    with np.errstate(
+        invalid="ignore"
+    ):  # what is zero stays so, however far the amplitudes are off
+        return np.where(changes == 0, 0.0, changes * relative)
 
 
 # Newton's method
@@ -201,13 +204,13 @@ def _left_out(
     around = np.unique(canonical_signs(told_apart(equation.harmonics)), axis=0)
     harmonics = around[[nu not in known for nu in map(tuple, around.tolist())]]
     forces = equation.force_at(cosines, harmonics)
-    rates = harmonics @ (equation.linear[equation.seed_columns] + shifts)
+    rates = harmonics @ (equation.seed_frequencies + shifts)
     divisors = np.abs(
         (rates[:, None] - equation.linear) * (rates[:, None] + equation.linear)
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         sizes = SAFETY * (np.abs(forces) + rounding) / divisors
-    return harmonics, rates, np.where(equation.allowed(harmonics), sizes, 0)
+    return harmonics, rates, np.where(equation.projection.at(harmonics).mask, sizes, 0)
 
 
 def _on(torus: QuasiPeriodic, harmonics: Ints) -> Floats:
@@ -286,47 +289,26 @@ def _of_amplitudes(torus: QTorus) -> float:
     return float(np.max(inverse @ left / (2 * squares))) + EPS / 2
 
 
-# orbits with digits
+# tori with digits
 
 
-def _of_digits(orbit: PreciseOrbit) -> _Errors:
-    """The bound of the residual over the divisors.
+def _of_digits(torus: PreciseTorus) -> _Errors:
+    """The bound of the residual over the divisors, at harmonics next to its own, too.
 
-    That of the amplitude goes along the family.
+    That of the amplitudes goes along the family.
     """
-    chain, omega = orbit.chain, float(orbit.frequency)
-    cosines, doubles = orbit.cosines.astype(float), orbit.in_doubles()
-    half = np.linspace(0, np.pi / omega, 4 * len(cosines))
-    largest = float(np.abs(chain.accelerations(doubles.positions(half))).max())
-    n = np.arange(highest_product(chain) * len(cosines))[:, None]
-    shift = float(shifts_of(orbit)[0])
-    linear = chain.frequencies()
-    divisors = np.abs((n * omega - linear) * (n * omega + linear))
-    divisors[1, orbit.seed - 1] = abs(shift * (2 * linear[orbit.seed - 1] + shift))
-    even = (np.arange(1, chain.N) - n * orbit.seed) % 2 == 0
-    allowed = even & ((n % 2 == 1) | (not chain.potential.even))
-    with np.errstate(divide="ignore"):
-        sizes = np.where(allowed, SAFETY * float(orbit.bound) * largest / divisors, 0.0)
-    relative = float(sizes[1, orbit.seed - 1] / abs(float(orbit.amplitude)))
-    own = slice(len(cosines))
-    sizes[own] += _along_the_family(chain, orbit.seeds, n[own], cosines, relative)
-    return _Errors(n, omega * n[:, 0], sizes)
-
-
-def _of_many_angles(torus: PreciseTorus) -> _Errors:
-    """The same of a torus, at harmonics next to its own, too."""
     chain, seeds = torus.chain, torus.seeds
     equation = InvarianceEquation(chain, seeds, canonical_signs(torus.harmonics))
     around = np.unique(canonical_signs(dilated(torus.harmonics, WIDENING)), axis=0)
     rows = places_of(equation.harmonics, around)
-    rates = around @ (equation.linear[equation.seed_columns] + shifts_of(torus))
+    rates = around @ (equation.seed_frequencies + shifts_of(torus))
     divisors = np.abs(
         (rates[:, None] - equation.linear) * (rates[:, None] + equation.linear)
     )
     divisors[rows] = np.abs(equation.divisors(shifts_of(torus)))
     left = SAFETY * float(torus.bound) * _largest_acceleration(torus)
     with np.errstate(divide="ignore"):
-        sizes = np.where(equation.allowed(around), left / divisors, 0.0)
+        sizes = np.where(equation.projection.at(around).mask, left / divisors, 0.0)
     cosines = torus.cosines.astype(float)
     seed = equation.seed_rows, equation.seed_columns
     relative = float(np.max(sizes[rows][seed] / np.abs(cosines[seed])))
@@ -339,4 +321,4 @@ def _largest_acceleration(torus: PreciseTorus) -> float:
     doubles = torus.in_doubles()
     slowest = min(float(w) for w in torus.frequencies)
     times = np.linspace(0, PERIODS * 2 * np.pi / slowest, SAMPLES)
-    return float(np.abs(torus.chain.accelerations(doubles.positions(times))).max())
+    return float(np.abs(torus.chain.accelerations(doubles.Q(times))).max())

@@ -16,6 +16,7 @@ from symfpu.frames.table import Columns, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.localization.profiles import energy_record
 from symfpu.numbers.counted import counted
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import double, seed_modes
 
 Floats = NDArray[np.float64]
@@ -155,6 +156,7 @@ class GrowthExponents(Tabled):
         return Table(columns, attributes(self))
 
 
+@public
 def growth_exponents(
     chain: Chain,
     times: ArrayLike,

@@ -23,6 +23,8 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Columns, Table
 from symfpu.frames.tabled import Tabled
+from symfpu.numbers.arithmetic import DOUBLES
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, seed_modes
 
 Floats = NDArray[np.float64]
@@ -56,7 +58,7 @@ class ProfileLine(Recorded):
     power: float = 0.0
 
     def __call__(self, kappa: ArrayLike) -> Floats:
-        kappa = np.asarray(kappa, dtype=np.float64)
+        kappa = DOUBLES.array(kappa)
         bend = self.power * np.log10(kappa) if self.power else 0.0
         return np.asarray(self.slope * kappa + self.intercept + bend)
 
@@ -72,6 +74,7 @@ def _signed(value: float) -> str:
     return f"{sign} {abs(value):.6g}"
 
 
+@public
 def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
     """lambda of seeds 1 .. s: alpha^2 eps / (pi M)^4 or beta eps / (pi M)^2.
 
@@ -93,6 +96,7 @@ def packet_parameter(chain: Chain, s: int, specific_energy: float) -> float:
     return abs(float(chain.beta)) * epsilon / width**2
 
 
+@public
 def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> Floats:
     """E^(k), the energy of the middle mode of D_k for seeds 1 .. s.
 
@@ -110,13 +114,20 @@ def group_energy(chain: Chain, s: int, specific_energy: float, k: ArrayLike) -> 
     require_chain(chain)
     parameter = packet_parameter(chain, s, specific_energy)
     M = s / chain.N
-    k = np.asarray(k, dtype=np.float64)
+    k = DOUBLES.array(k)
+    if not (k >= 0).all():
+        raise InputError("k", k.tolist(), "0 or more", "a group has an order")
     front = specific_energy / M
-    if chain.alpha:
-        return np.asarray(front * (k + 0.5) ** 2 * parameter**k)
-    return np.asarray(front * parameter ** (2 * k))
+    with np.errstate(over="ignore", invalid="ignore"):
+        powers = parameter**k if chain.alpha else parameter ** (2 * k)
+        energies = np.asarray(front * powers * ((k + 0.5) ** 2 if chain.alpha else 1))
+    if not np.isfinite(energies).all():
+        allowed = f"orders whose energies are doubles (lambda = {parameter:.3g})"
+        raise InputError("k", k.tolist(), allowed, "take lower ones")
+    return energies
 
 
+@public
 def profile_law(
     chain: Chain, s: int, specific_energy: float, *, denominator: int | None = None
 ) -> ProfileLine:
@@ -144,13 +155,15 @@ def profile_law(
     return ProfileLine(slope, intercept, 2.0)
 
 
+@public
 def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) -> Floats:
     """E_q of the breather with seed 1, alpha model, Eq. brelaw: gamma^(q-1) q^2 E_1; shape (N-1,).
 
     chain : the alpha model. energy : E; gamma = alpha^2 N^4 eps / pi^4 with eps = energy/N.
     seed_energy : E_1, default the energy. All dimensionless.
 
-    Raises InputError, also for a chain with beta, for which the law is not stated.
+    Raises InputError, also where gamma is 1 or more, and for a chain with beta, for which the law
+    is not stated.
 
     >>> breather_law(Chain(N=4, alpha="0.33"), 0.01).round(9)
     array([1.000e-02, 2.862e-05, 4.600e-08])
@@ -162,11 +175,17 @@ def breather_law(chain: Chain, energy: float, seed_energy: float | None = None) 
         )
     specific_energy = positive(energy, "energy") / chain.N
     gamma = packet_parameter(chain, 1, specific_energy)
+    if gamma >= 1:
+        allowed = (
+            f"one with gamma < 1 (gamma = {gamma:.3g}): the series is of powers of gamma"
+        )
+        raise InputError("energy", energy, allowed, "take a smaller energy")
     first = energy if seed_energy is None else positive(seed_energy, "seed_energy")
     q = np.arange(1, chain.N)
     return np.asarray(gamma ** (q - 1.0) * q**2 * first)
 
 
+@public
 def least_packet(chain: Chain, specific_energy: float) -> float:
     """The width s at which lambda = 1: alpha^(1/2) eps^(1/4) N / pi, or (beta eps)^(1/2) N / pi.
 
@@ -184,6 +203,7 @@ def least_packet(chain: Chain, specific_energy: float) -> float:
     return float(parameter ** (0.25 if chain.alpha else 0.5))
 
 
+@public
 def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") -> float:
     """Width of the natural packet of the alpha model: (alpha^2 eps)^(1/4) N, or with 1/5.
 
@@ -212,6 +232,7 @@ def natural_packet(chain: Chain, specific_energy: float, exponent: str = "1/4") 
     return float(chain.N * fraction)
 
 
+@public
 def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
     """D_0, D_1, ... of seeds 1 .. s: {ks+1 .. (k+1)s} (alpha), {(2k-1)s+1 .. (2k+1)s} (beta).
 
@@ -230,6 +251,7 @@ def packet_groups(chain: Chain, s: int) -> tuple[range, ...]:
     return tuple(range(a + 1, b + 1) for a, b in pairwise(ends))
 
 
+@public
 def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
     """The middle modes of D_1, D_2, ... of seeds 1 .. s: ks + [s/2] (alpha), 2ks (beta), below N.
 
@@ -248,6 +270,7 @@ def middle_modes(chain: Chain, s: int) -> tuple[int, ...]:
     return tuple(range(step + offset, chain.N, step))
 
 
+@public
 def rounding_floor(
     chain: Chain, spectrum: ArrayLike, T: float, *, step: float, scheme: str = "kahan_li8"
 ) -> Floats:
@@ -326,6 +349,7 @@ class ProfileFit(Tabled):
         return Table(columns, attributes(self, scatter=self.scatter, **known))
 
 
+@public
 def fit_profile(
     chain: Chain,
     spectrum: ArrayLike,
@@ -482,7 +506,7 @@ def positive(value: float, argument: str) -> float:
 def _spectrum(chain: Chain, spectrum: ArrayLike) -> Floats:
     require_chain(chain)
     try:
-        E = np.asarray(spectrum, dtype=np.float64)
+        E = DOUBLES.array(spectrum)
     except (TypeError, ValueError) as error:
         raise InputError(
             "spectrum", spectrum, "an array of numbers", "pass mean mode energies"
@@ -520,7 +544,7 @@ def _modes(chain: Chain, s: int, modes: str | Sequence[int]) -> tuple[int, ...]:
 def _floor(chain: Chain, floor: float | ArrayLike, E: Floats) -> Floats:
     """As energies in the unit of E, (N-1,)."""
     try:
-        least = np.asarray(floor, dtype=np.float64)
+        least = DOUBLES.array(floor)
     except (TypeError, ValueError) as error:
         allowed = f"a number, or {chain.N - 1} of them"
         raise InputError("floor", floor, allowed, FLOOR_ADVICE) from error

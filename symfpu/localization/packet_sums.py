@@ -28,6 +28,7 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.localization.laws import middle_modes, packet_width, positive
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, seed_modes
 
 Floats = NDArray[np.float64]
@@ -75,6 +76,7 @@ class Recursion:
         return np.array(list(places)), first, np.array([g for _, g in kept]), parts
 
 
+@public
 def packet_energies(
     chain: Chain,
     s: int,

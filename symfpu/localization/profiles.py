@@ -4,7 +4,7 @@ They are of FPU-trajectories and packets: normalised spectra, and distances betw
 
 An `Orbit` integrated with averages=True is a running spectrum: its `averages` are Ebar_q(t), its
 `harmonic_energies()` E_q(t). The closed form of a torus is `torus.average_spectrum(T)`; PLn is
-the orbit from `torus.positions(0)` and `torus.momenta(0)`.
+the orbit from `torus.Q(0)` and `torus.P(0)`.
 """
 
 from __future__ import annotations
@@ -20,12 +20,15 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.frames.recorded import Recorded
+from symfpu.numbers.arithmetic import DOUBLES
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, seed_modes
 
 Floats = NDArray[np.float64]
 SHARES = ("energy", "amplitude")
 
 
+@public
 def fpu_trajectory(
     chain: Chain,
     amplitudes: Mapping[int, Number],
@@ -66,6 +69,7 @@ def fpu_trajectory(
     return Q, P
 
 
+@public
 def packet_amplitudes(
     chain: Chain, seeds: Sequence[int], energy: Number, *, share: str = "energy"
 ) -> dict[int, float]:
@@ -102,6 +106,7 @@ def packet_amplitudes(
     return dict(zip(modes, amplitudes, strict=True))
 
 
+@public
 def normalised_averages(orbit: Orbit) -> Floats:
     """Running averages of the harmonic energies over the total energy; shape (S, ..., N-1).
 
@@ -156,6 +161,7 @@ class ProfileDistance(Recorded):
         return f"ProfileDistance({largest}, {self.modes} modes above the floor)"
 
 
+@public
 def profile_distance(a: ArrayLike, b: ArrayLike, floor: float) -> ProfileDistance:
     """How far two spectra differ: the largest |log10(a_q/b_q)|, in decades, as a ProfileDistance.
 
@@ -213,7 +219,7 @@ def energy_record(times: ArrayLike, values: ArrayLike, name: str) -> tuple[Float
 
 def mode_energies(values: ArrayLike, name: str) -> Floats:
     try:
-        array = np.asarray(values, dtype=np.float64)
+        array = DOUBLES.array(values)
     except (TypeError, ValueError) as error:
         raise InputError(
             name, values, "an array of numbers", "pass those of an orbit"

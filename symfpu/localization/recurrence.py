@@ -13,6 +13,7 @@ from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.localization.profiles import energy_record
 from symfpu.numbers.counted import counted
+from symfpu.numbers.public import public
 
 Floats = NDArray[np.float64]
 # of the largest distance: apart, so that wiggles do not cross both
@@ -82,6 +83,7 @@ class Recurrence(Tabled):
         return Table(columns, attributes(self, excursion=self.excursion))
 
 
+@public
 def recurrence(times: ArrayLike, energies: ArrayLike) -> Recurrence:
     """When the mode energies come back, by the fraction of the energy that is elsewhere, d(t).
 

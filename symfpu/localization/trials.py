@@ -30,7 +30,9 @@ from symfpu.localization.laws import (
     rounding_floor,
 )
 from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
-from symfpu.numbers.typed import Number, exact, integer
+from symfpu.numbers.arithmetic import DOUBLES
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, exact, integer, random_seed
 
 Floats = NDArray[np.float64]
 # times the expected rounding noise: what noise adds to log10 e is 0.04 there
@@ -71,8 +73,8 @@ class Trend(Tabled):
 
 
 def _trend(x: ArrayLike, y: ArrayLike) -> Trend:
-    x = np.asarray(x, dtype=np.float64)
-    y = np.asarray(y, dtype=np.float64)
+    x = DOUBLES.array(x)
+    y = DOUBLES.array(y)
     dx = x - x.mean()
     dy = y - y.mean()
     square = dx @ dx
@@ -82,6 +84,7 @@ def _trend(x: ArrayLike, y: ArrayLike) -> Trend:
     return Trend(x, y, rate, float(np.sqrt(variance / square)))
 
 
+@public
 def slope_by_energy(
     chain: Chain,
     s: int,
@@ -114,7 +117,7 @@ def slope_by_energy(
         [positive(energy, "specific_energies") for energy in specific_energies]
     )
     try:
-        rows = np.asarray(spectra, dtype=np.float64)
+        rows = DOUBLES.array(spectra)
     except (TypeError, ValueError) as error:
         raise InputError(
             "spectra",
@@ -144,6 +147,7 @@ def _power_of_the_law(chain: Chain) -> float:
     return 2.0 if chain.alpha else 0.0
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class ProfileInvariance(Tabled):
     """Profiles of packets of the same M and eps in chains of several lengths.
@@ -340,6 +344,7 @@ def _level(
     return level, float(error)
 
 
+@public
 def profile_invariance(
     chain: Chain,
     fraction: Number,
@@ -394,7 +399,7 @@ def profile_invariance(
         s = int(M * longer.N)
         generator = None
         if phases == "random":
-            generator = np.random.default_rng((integer(seed, "seed", 0), longer.N))
+            generator = np.random.default_rng((random_seed(seed), longer.N))
         E = _averaged(longer, s, epsilon, T, realisations, generator, **how)
         mean = E.mean(axis=0)
         floor = ROUNDING_MARGIN * rounding_floor(longer, mean, T, step=step, scheme=scheme)

@@ -25,7 +25,7 @@ from symfpu.normal.reduction import (
     followed,
     shares_of,
 )
-from symfpu.refinement.equation import Floats
+from symfpu.refinement.lattice import Floats
 
 SPACING = 1e-3  # of the three values of sigma, relative
 REACH = 10.0  # spacings from nu.omega, up to which the parabola is believed

@@ -14,14 +14,11 @@ import numpy as np
 from symfpu.normal.modes import NormalMode
 from symfpu.normal.reduction import LEAST_ACTION
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 
-def undecided_modes(
-    torus: QuasiPeriodic | RingTorus, modes: Sequence[NormalMode]
-) -> tuple[int, ...]:
+def undecided_modes(torus: QuasiPeriodic, modes: Sequence[NormalMode]) -> tuple[int, ...]:
     """Those of the modes that may be elliptic or hyperbolic; of a ring none is said to be."""
-    if isinstance(torus, RingTorus):
+    if torus.chain.periodic:
         return ()
     found = {mode.mode for mode in modes if _hidden(mode)}
     elliptic = [mode for mode in modes if not mode.growth]

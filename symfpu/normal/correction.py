@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from symfpu.normal.linearised import LinearisedFlow, Values
+from symfpu.normal.linearised import Linearised, Values
 from symfpu.normal.reduction import KRYLOV, RESTARTS, Block
 
 BLOCK = 1200  # unknowns that are solved for directly, if there are so many
@@ -23,7 +23,7 @@ ACCURACY = 1e-13  # of a Krylov solution, relative to the residual
 class NormalCorrection:
     """The bordered matrix of a normal mode that continues q, near sigma and p (F, N-1)."""
 
-    def __init__(self, flow: LinearisedFlow, q: int, sigma: complex, p: Values) -> None:
+    def __init__(self, flow: Linearised, q: int, sigma: complex, p: Values) -> None:
         near = float(complex(sigma).real)
         self.flow, self.block = flow, Block(flow, q, near, (BLOCK, BLOCK))
         self.mask = self.block.mask

@@ -12,10 +12,11 @@ from typing import Any
 import flint
 import numpy as np
 
+from symfpu.chain.projections.by_ends import projection
 from symfpu.chain.tension_terms import Terms, stiffness_terms
 from symfpu.numbers.arithmetic import mpf
-from symfpu.refinement.equation import Ints
 from symfpu.refinement.kronecker import Box, Integers, KroneckerForce
+from symfpu.refinement.lattice import Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 NEAR_REACH = 1.01  # times the largest stretch
@@ -31,7 +32,8 @@ class KroneckerFlow(KroneckerForce):
         self.harmonics = harmonics
         every = np.concatenate([harmonics, torus.harmonics])
         box = Box(np.abs(every).max(axis=0), whole=False)
-        super().__init__(torus.chain, box, bits, _reach(torus))
+        there = projection(torus.chain, torus.seeds, harmonics)
+        super().__init__(there, box, bits, _reach(torus))
         self.omega: Integers = np.array(
             [self.fixed(w) for w in torus.frequencies], dtype=object
         )
@@ -46,20 +48,22 @@ class KroneckerFlow(KroneckerForce):
     def _packed_slopes(self, torus: QuasiPeriodic) -> list[Any]:
         """V''(r) - 1 of half of the bonds, as polynomials."""
         each_fixed = np.frompyfunc(lambda x: self.fixed(mpf(x)), 1, 1)
-        stretches = self.stretches(each_fixed(torus.cosines))
+        stretches = self.stretches(torus.harmonics, each_fixed(torus.cosines))
         rows = self.box.rows(torus.harmonics)
-        return [self.box.packed(self._sum_of_powers(rows, r).values) for r in stretches.T]
+        return [
+            self.box.packed(self._sum_of_powers(rows, r, 0).values) for r in stretches.T
+        ]
 
     def coupling(self, rows: Ints, p: Integers) -> Integers:
         """K p at all chosen harmonics, (M, N-1), of real p (F, N-1) at some of them.
 
         It holds where the selection rules let a mode carry a harmonic.
         """
-        stretches = self.stretches(p)
+        stretches = self.stretches(self.harmonics[rows], p)
         sums = np.zeros((len(self.harmonics), stretches.shape[1]), dtype=object)
         for j, slope in enumerate(self._slopes):
             sums[:, j] = self._multiplied(slope, self._places[rows], stretches[:, j])
-        return self._times(sums, flint.fmpz_mat(self._back.tolist()))
+        return self.driven(self.harmonics, sums)
 
     def _multiplied(self, slope: Any, places: Ints, values: Integers) -> Integers:
         """A slope times a function that has values at places; at all chosen harmonics."""
@@ -89,8 +93,9 @@ class KroneckerFlow(KroneckerForce):
         rates[:] = sigma[:, None]
         rates[0] += self.rates
         found = -multiplied(rates, rates, self.bits)[:, :, None]
-        found = np.repeat(found, len(self.squares), axis=2)
-        found[0] += self.squares
+        squares = self.squares(self.harmonics)
+        found = np.repeat(found, squares.shape[1], axis=2)
+        found[0] += squares
         return np.asarray(found)
 
 

@@ -1,18 +1,17 @@
 """The equations of motion linearised about a torus, in harmonics of its angles.
 
-A solution exp(i sigma t) p(theta) with p_q(theta) = sum over nu of p_q[nu] exp(i nu.theta) has
+A solution exp(i sigma t) p(theta) with p(theta) = sum over nu of p[nu] exp(i nu.theta) has
 
-    (Omega_q^2 - (sigma + nu.omega)^2) p_q[nu] + (K p)_q[nu] = 0,
+    (Omega^2 - (sigma + nu.omega)^2) p[nu] + (K p)[nu] = 0,
 
 K the products with V''(r) - 1 on the bonds: L(sigma) p = 0. The torus is even in its angles, so
-that K is real and symmetric, and so are the coefficients p for real sigma. Reflection of the
-chain splits the unknowns as it does those of the torus, and where V is even only nu of even
-length occur.
+that K is real and symmetric, and so are the coefficients p for real sigma. What the columns of p
+are is said by the projection of the chain: all modes of fixed ends, the one wave of each harmonic
+beside travelling waves, sines or cosines about standing ones.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from copy import copy
 from functools import cached_property
 from typing import Any, Self
@@ -20,121 +19,150 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain.chain import Chain
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
-from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.lattice import WORKERS, Lattice
+from symfpu.chain.projections.projection import Mask, Projection, linear_halves
+from symfpu.chain.projections.standing import SineProjection
+from symfpu.refinement.invariance import ROWS, InvarianceEquation
+from symfpu.refinement.lattice import WORKERS, Floats, Ints, canonical_signs
 from symfpu.refinement.tori import shifts_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.unfolding import folded
 
 Values = NDArray[Any]  # doubles or complex doubles
-Mask = NDArray[np.bool_]
 
 
-class Linearised(ABC):
-    """K and the frequencies of one torus, whatever the ends: coefficients are tables (F, C).
+class Linearised:
+    """K and the frequencies of one torus: coefficients are tables (F, C).
 
-    harmonics : those chosen and their negatives, shape (F, s), the first one 0.
-    rates : nu.omega in long doubles, shape (F,). linear : Omega of the unknowns in long doubles,
-    (C,) or (F, C). slopes : V'' - 1 at the points, (bonds, points).
+    equation : of the torus, at the harmonics chosen. harmonics : those and their negatives, shape
+    (F, s), the first one 0. projection : of deviations, at all of them. linear : Omega of the
+    unknowns in long doubles, (F | 1, C). rates : nu.omega in long doubles, shape (F,). slopes :
+    V'' - 1 at the points, (B, points).
     """
 
-    chain: Chain
-    seeds: tuple[int, ...]
-    harmonics: Ints
-    rates: Floats
-    linear: Floats
-    slopes: Floats
-    means: Floats  # the diagonal of K, (C,) or (F, C)
-    equation: TorusEquation  # of the torus, at the harmonics chosen
-    _grid: Lattice
-    _place: Ints
+    def __init__(self, torus: QuasiPeriodic, harmonics: Ints) -> None:
+        both = of_both_signs(harmonics)
+        if torus.stands:
+            half = folded(torus)
+            self.equation = InvarianceEquation(half.chain, half.seeds, harmonics)
+            self.projection: Projection = SineProjection(
+                torus.chain, half.chain, half.seeds, both
+            )
+        else:
+            self.equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
+            self.projection = self.equation.projection.at(both).deviating(0)
+        self.chain, self.seeds = self.equation.chain, self.equation.seeds
+        self.harmonics, self._grid = both, self.equation.grid
+        self._place = both @ self._grid.generator % self._grid.period
+        rows = coefficients_by_harmonic(torus)
+        nothing = np.zeros(self.equation.projection.columns)
+        coefficients = [rows.get(tuple(nu), nothing) for nu in harmonics.tolist()]
+        self._take(np.array(coefficients), shifts_of(torus))
+
+    def _take(self, coefficients: Floats, shifts: Floats) -> None:
+        self.rates = self.harmonics @ (self.equation.seed_frequencies + shifts)
+        self.slopes = self.equation.slopes(coefficients)
+
+    def _copied(self) -> Self:
+        found = copy(self)
+        for name in ("_spectrum", "_couplings", "means"):
+            found.__dict__.pop(name, None)
+        return found
 
     def scaled(self, factor: float) -> Self:
         """With K times a factor: what a solution is continued in, from 0 to 1."""
-        result = copy(self)
-        result.slopes = factor * self.slopes
-        for name in ("_spectrum", "means"):
-            result.__dict__.pop(name, None)
-        return result
+        found = self._copied()
+        found.slopes = factor * self.slopes
+        return found
 
     def moved(self, coefficients: Floats, shifts: Floats) -> Self:
         """About another torus nearby, by its coefficients at the harmonics chosen and shifts."""
-        result = copy(self)
-        result.rates = self.harmonics @ (self.equation.seed_frequencies + shifts)
-        result.slopes = self.equation.slopes(coefficients)
-        for name in ("_spectrum", "means"):
-            result.__dict__.pop(name, None)
-        return result
+        found = self._copied()
+        found._take(coefficients, shifts)
+        return found
 
-    @abstractmethod
     def of(self, q: int) -> Self:
         """With the unknowns of the mode q."""
+        projection = self.projection.deviating(q)
+        if projection is self.projection:
+            return self
+        found = self._copied()
+        found.projection = projection
+        return found
 
-    @abstractmethod
+    @property
+    def linear(self) -> Floats:
+        return self.projection.omega
+
     def column(self, q: int) -> int:
         """Where the mode q without any angle is, in the first row."""
+        return self.projection.column(q)
 
-    @abstractmethod
     def frequency(self, q: int) -> float:
         """Omega_q."""
+        linear, _ = linear_halves(self.chain)
+        return float(linear[abs(q)])
 
-    @abstractmethod
     def mode_at(self, row: int, column: int) -> int:
         """The mode of an unknown."""
+        shape = len(self.harmonics), self.projection.columns
+        modes = np.broadcast_to(self.projection.modes, shape)
+        return int(modes[row, column])
 
-    @abstractmethod
     def allowed(self, q: int) -> Mask:
         """The unknowns of the normal mode that starts in the mode q; shape (F, C)."""
+        return self.projection.mask_of_deviation(q)
 
-    @abstractmethod
+    def allowed_at(self, q: int, harmonics: Ints) -> Mask:
+        """Where the selection rules let it have other harmonics (M, s); shape (M, C)."""
+        return self.projection.at(harmonics).mask_of_deviation(q)
+
     def by_mode(self, p: Values) -> Values:
         """Coefficients of all modes, (F, N-1), of a table."""
+        return self.projection.by_mode(p)
 
-    @abstractmethod
     def table(self, p: Values) -> Values:
         """The table of coefficients of all modes, (F, N-1)."""
+        return self.projection.from_modes(p)
 
-    @abstractmethod
+    @cached_property
+    def means(self) -> Floats:
+        """The diagonal of K, (F | 1, C)."""
+        return self.projection.diagonal(self._spectrum[:, 0])
+
     def block(self, rows: Ints, columns: Ints) -> Floats:
         """K between chosen unknowns, given by harmonic and column; shape (m, m)."""
-
-    @abstractmethod
-    def _stretched(self, p: Floats) -> Floats:
-        """What a table stretches, by bond and harmonic; shape (bonds, F)."""
-
-    @abstractmethod
-    def _images(self) -> Floats:
-        """How many bonds each of those held stands for; shape (bonds, 1)."""
-
-    @abstractmethod
-    def _driven(self, sums: Floats) -> Floats:
-        """What tensions (bonds, F) drive, as a table."""
-
-    @abstractmethod
-    def _norm(self, sums: Floats) -> float:
-        """Of what tensions of all places of the lattice drive, (bonds, M), at most."""
+        along, scale = self._place[rows], self.projection.scales(rows, columns)
+        matrix = np.empty((len(rows), len(rows)))
+        for first in range(0, len(rows), ROWS):
+            own, rest = slice(first, first + ROWS), slice(first, None)
+            places = [self._grid.folded(along[own, None] - along[rest])]
+            others = columns[own, None], columns[rest]
+            found = self.projection.between(self._couplings, places, *others)
+            matrix[own, rest] = scale[own, None] * scale[rest] * found
+            matrix[rest, own] = matrix[own, rest].T
+        return matrix
 
     def coupling(self, p: Values) -> Values:
         """K p of a table, real or complex."""
         if np.iscomplexobj(p):
             return self.coupling(p.real) + 1j * self.coupling(p.imag)
-        return self._driven(self._products(p)[:, self._place])
+        sums = self._products(p)[:, self._place]
+        return self.projection.from_points(sums.T)
 
     def squares(self, p: Floats) -> Floats:
-        """What slopes are multiplied by to make p^T K p, in the mean; (bonds, points)."""
-        return np.asarray(self._images() * np.abs(self._values(p)) ** 2)
+        """What slopes are multiplied by to make p^T K p, in the mean; (B, points)."""
+        return np.asarray(self.projection.images[:, None] * np.abs(self._values(p)) ** 2)
 
     def left_out(self, p: Values) -> float:
-        """The norm of K p at all harmonics of the lattice that are not chosen."""
+        """The norm of K p at all harmonics of the lattice that are not chosen, at most."""
         if np.iscomplexobj(p):
             return float(np.hypot(self.left_out(p.real), self.left_out(p.imag)))
         sums = self._products(p)
         sums[:, self._place] = 0
-        return self._norm(sums)
+        return self.projection.largest_norm(sums)
 
     def _products(self, p: Floats) -> Floats:
-        """Of slopes and stretches by the bond, as coefficients by place; shape (bonds, M).
+        """Of slopes and stretches by the point, as coefficients by place; shape (B, M).
 
         With real coefficients the values at opposite angles are conjugate: half are enough.
         """
@@ -146,18 +174,22 @@ class Linearised(ABC):
         return np.asarray(sums)
 
     def _values(self, p: Floats) -> Values:
-        """Stretches at half of the points; shape (bonds, points)."""
+        """Stretches at half of the points; shape (B, points)."""
         from scipy import fft
 
-        stretched = self._stretched(p)
+        stretched = self.projection.to_points(p).T
         spectrum = np.zeros((len(stretched), self._grid.period))
         spectrum[:, self._place] = stretched
         return np.asarray(fft.rfft(spectrum, workers=WORKERS))
 
     @cached_property
     def _spectrum(self) -> Floats:
-        """Coefficients of exp(i nu.theta) in the slopes, by place; shape (points, bonds)."""
-        return np.ascontiguousarray(self._grid.spectrum(self.slopes).T)
+        """Coefficients of exp(i nu.theta) in the slopes, by place; shape (B, points)."""
+        return self._grid.spectrum(self.slopes)
+
+    @cached_property
+    def _couplings(self) -> Floats:
+        return self.projection.coupling_table(self._spectrum)
 
     def divisors(self, sigma: complex) -> Values:
         """Omega_q^2 - (sigma + nu.omega)^2 in doubles, from long doubles; shape (F, C)."""
@@ -176,94 +208,9 @@ def of_both_signs(harmonics: Ints) -> Ints:
     return np.concatenate([still, moving, -moving])
 
 
-class LinearisedFlow(Linearised):
-    """K and the frequencies of one torus of fixed ends, for all of its normal modes.
-
-    Coefficients have a column for every mode.
-    """
-
-    def __init__(self, torus: QuasiPeriodic, harmonics: Ints) -> None:
-        self.chain, self.seeds = torus.chain, torus.seeds
-        equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
-        self.equation, self._grid = equation, equation.grid
-        self.harmonics = of_both_signs(harmonics)
-        self.linear = equation.linear
-        self.rates = self.harmonics @ (equation.seed_frequencies + shifts_of(torus))
-        self._stretch, self._back = equation.stretches_of_half()
-        self.slopes = equation.slopes(_coefficients(torus, harmonics))
-        self._place = self.harmonics @ self._grid.generator % self._grid.period
-
-    def of(self, q: int) -> LinearisedFlow:
-        return self
-
-    def column(self, q: int) -> int:
-        return q - 1
-
-    def mode_at(self, row: int, column: int) -> int:
-        return column + 1
-
-    def frequency(self, q: int) -> float:
-        return float(self.linear[q - 1])
-
-    def by_mode(self, p: Values) -> Values:
-        return p
-
-    def table(self, p: Values) -> Values:
-        return p
-
-    def allowed(self, q: int) -> Mask:
-        return self.allowed_at(q, self.harmonics)
-
-    def allowed_at(self, q: int, harmonics: Ints) -> Mask:
-        """Where the selection rules let it have other harmonics (M, s); shape (M, N-1)."""
-        modes = np.arange(1, self.chain.N)
-        parity = (harmonics @ np.array(self.seeds) + q) % 2
-        mask = parity[:, None] == modes % 2
-        if self.chain.potential.even:
-            even = harmonics.sum(axis=1) % 2 == 0
-            mask &= even[:, None]
-        return np.asarray(mask)
-
-    def _stretched(self, p: Floats) -> Floats:
-        return np.asarray((p @ self._stretch).T)
-
-    def _images(self) -> Floats:
-        bonds = np.arange((self.chain.N + 1) // 2)
-        return np.where(2 * bonds + 1 == self.chain.N, 1.0, 2.0)[:, None]
-
-    def _driven(self, sums: Floats) -> Floats:
-        return np.asarray(sums.T @ self._back.T)
-
-    def _norm(self, sums: Floats) -> float:
-        return float(np.linalg.norm(self._back @ sums))
-
-    @cached_property
-    def means(self) -> Floats:  # type: ignore[override]
-        """The diagonal of K, by mode; shape (N-1,)."""
-        return np.asarray((self._stretch * self._back) @ self._spectrum[0])
-
-    def block(self, rows: Ints, columns: Ints) -> Floats:
-        along = self._place[rows]
-        there, back = self._stretch[columns], self._back[columns]
-        matrix = np.empty((len(rows), len(rows)))
-        for a in range(len(rows)):
-            slope = self._spectrum[self._grid.folded(along[a] - along)]
-            matrix[a] = (slope * there) @ back[a]
-        return matrix
-
-
-def _coefficients(torus: QuasiPeriodic, harmonics: Ints) -> Floats:
-    """Those of the torus at chosen harmonics, 0 where it has none; shape (H, N-1)."""
-    nothing = np.zeros(torus.chain.N - 1)
-    rows = coefficients_by_harmonic(torus)
-    return np.array([rows.get(tuple(nu), nothing) for nu in harmonics.tolist()])
-
-
-def coefficients_by_harmonic(torus: QuasiPeriodic) -> dict[tuple[int, ...], Floats]:
-    """The rows of a torus, the first number of every harmonic that is not 0 positive."""
-    rows: dict[tuple[int, ...], Floats] = {}
-    cosines = torus.cosines.astype(float)
-    for nu, row in zip(torus.harmonics.tolist(), cosines, strict=True):
-        sign = -1 if next((n for n in nu if n), 1) < 0 else 1
-        rows[tuple(sign * n for n in nu)] = row
-    return rows
+def coefficients_by_harmonic(
+    torus: QuasiPeriodic,
+) -> dict[tuple[int, ...], Floats]:
+    """The rows (C,) of a torus, the first number of every harmonic that is not 0 positive."""
+    signed = canonical_signs(np.asarray(torus.harmonics))
+    return dict(zip(map(tuple, signed.tolist()), torus.cosines.astype(float), strict=True))

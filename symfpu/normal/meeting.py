@@ -30,9 +30,9 @@ from symfpu.normal.reduction import (
 from symfpu.normal.resonances import DIFFERENCE, ParametricResonance
 from symfpu.normal.search import at_harmonics
 from symfpu.normal.torus import finest_flow
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import Floats, Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 STEPS = 8  # of sigma, for one torus
 ENOUGH = 1e-9  # relative step of sigma that ends them: what is left is its square
@@ -86,14 +86,14 @@ class NormalCondition(ABC):
         """Raises Lost."""
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         """What is to be zero; raises Lost."""
         _, found = self._at(equation, cosines, shifts)
         return np.longdouble(found.value)
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         """Derivatives of the value by coefficients (H, C) and shifts (s,)."""
         own, found = self._at(equation, cosines, shifts)
@@ -110,7 +110,7 @@ class NormalCondition(ABC):
         by_cosine[outside] = own.equation.slope_changes(half, weights)[inside]
         return by_cosine, by_shift
 
-    def error(self, torus: QuasiPeriodic | RingTorus) -> float:
+    def error(self, torus: QuasiPeriodic) -> float:
         """Of the value on a torus that was found, about: rounding, and what its residual makes."""
         omega = np.array([abs(float(w)) for w in torus.frequencies])
         return self._rounding + torus.residual() * float(np.abs(self._slope) @ omega)
@@ -120,7 +120,7 @@ class NormalCondition(ABC):
         return np.zeros(len(self._harmonic))
 
     def _at(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Linearised, _Found]:
         """The flow about an iterate, and what is known of it."""
         if self._known is None or self._known[0] is not cosines:
@@ -129,14 +129,14 @@ class NormalCondition(ABC):
             self._known = cosines, flow, self._of(flow)
         return self._known[1:]
 
-    def _half(self, equation: TorusEquation, cosines: Floats) -> Floats:
+    def _half(self, equation: InvarianceEquation, cosines: Floats) -> Floats:
         """The coefficients of an iterate at the harmonics of the flow; 0 where it has none."""
         inside, outside = self._rows(equation)
         half = np.zeros((len(self._flow.equation.harmonics), cosines.shape[1]))
         half[inside] = cosines[outside]
         return half
 
-    def _rows(self, equation: TorusEquation) -> tuple[Ints, Ints]:
+    def _rows(self, equation: InvarianceEquation) -> tuple[Ints, Ints]:
         """Rows of the harmonics that the flow and an equation share, in the one and the other."""
         rows = {tuple(nu): i for i, nu in enumerate(equation.harmonics.tolist())}
         own = enumerate(map(tuple, self._flow.equation.harmonics.tolist()))

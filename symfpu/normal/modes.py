@@ -22,10 +22,10 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.notebook import Shown
-from symfpu.numbers.arithmetic import MULTIPRECISION, text, with_digits
-from symfpu.refinement.equation import Floats, Ints
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, text, with_digits
+from symfpu.numbers.public import public
+from symfpu.refinement.lattice import Floats, Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 ELLIPTIC, HYPERBOLIC = "elliptic", "hyperbolic"
 SIGMA_DIGITS, GROWTH_DIGITS = 13, 10  # that are shown of doubles
@@ -74,6 +74,7 @@ class NormalDivisor:
         return f"{abs(self.divisor):.2g} at {place}, coefficient {size:.2g}"
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class NormalMode:
     """A solution exp(i sigma t) p(theta) of the linearised equations; its conjugate is another.
@@ -168,10 +169,11 @@ class NormalMode:
 
     def variation(self, theta: ArrayLike) -> NDArray[np.complex128]:
         """p at angles (T, s) or (s,), radians, phases included: complex, (T, N-1) or (N-1,)."""
-        angles = np.asarray(theta, dtype=float) @ self.harmonics.T
+        angles = DOUBLES.array(theta) @ self.harmonics.T
         return np.asarray(np.exp(1j * angles) @ self.in_doubles().coefficients)
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class NormalModes(Shown, Gridded):
     """Normal frequencies of a torus, and its resonances. Made by `normal_modes`; ours.
@@ -193,7 +195,7 @@ class NormalModes(Shown, Gridded):
     1     3  elliptic          1
     """
 
-    torus: QuasiPeriodic | RingTorus
+    torus: QuasiPeriodic
     modes: tuple[NormalMode, ...]
     guesses: dict[int, float] = field(repr=False)
     resonances: tuple[ParametricResonance, ...] = field(repr=False)

@@ -10,11 +10,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from symfpu.normal.linearised_standing import is_standing
 from symfpu.normal.modes import NormalMode
 from symfpu.normal.reduction import SURE
-from symfpu.normal.torus import Solution
-from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 SAME = 1e-9  # difference of two frequencies that are one
 ALIKE = 1e-3  # relative difference of one coefficient of one solution, in other harmonics
@@ -25,10 +23,10 @@ RIVAL = 0.5
 class Names:
     """The modes after which directions of one torus are named."""
 
-    def __init__(self, torus: Solution) -> None:
+    def __init__(self, torus: QuasiPeriodic) -> None:
         self._modes = torus.chain.mode_numbers
         self._normal = [q for q in self._modes if q not in torus.seeds]
-        self._travels = isinstance(torus, RingTorus) and not is_standing(torus)
+        self._travels = torus.travels
 
     def share(self, found: NormalMode) -> float:
         """The main coefficient, of an eigenfunction of norm 1."""

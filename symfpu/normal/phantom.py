@@ -28,20 +28,22 @@ from symfpu.frames.table import Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, with_digits
 from symfpu.numbers.counted import counted
-from symfpu.numbers.typed import Number, exact, integer
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, exact, integer, order_of
 from symfpu.series.arguments import digits_of
 from symfpu.series.divisors import SmallDivisor
 from symfpu.series.fixed_point import fixed_point_series
+from symfpu.series.lindstedt import series_of_waves
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import monomial_space
 from symfpu.series.recursion import named_series
 from symfpu.series.rings import BY_NAME, RINGS
 from symfpu.series.series import LindstedtSeries
-from symfpu.series.travelling import TravellingSeries, series_of_waves
 
 Exponents = tuple[int, ...]
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class NormalFrequencySeries(Tabled):
     """sigma_q = Omega_q + sum mu^k sigma_q^(k)(A), a normal frequency by the torus' amplitudes.
@@ -132,7 +134,7 @@ class NormalFrequencySeries(Tabled):
         return se.expand(formula.subs({amplitude_symbol(self.mode): 0}))
 
     def _order(self, order: int) -> int:
-        if integer(order, "order", 0) > self.order:
+        if order_of(order) > self.order:
             allowed = f"0..{self.order}, the series' order"
             raise InputError("order", order, allowed, "compute a longer series")
         return int(order)
@@ -193,6 +195,7 @@ def _sum(part: Mapping[Exponents, Any], amplitudes: Sequence[Any]) -> Any:
     return total
 
 
+@public
 def normal_frequency_series(
     chain: Chain,
     seeds: Sequence[int],
@@ -234,7 +237,7 @@ def normal_frequency_series(
         raise InputError("chain", "N a symbol", "a chain whose N is a number", advice)
     torus = tuple(sorted(chain.seeds_of(seeds)))
     phantom = _phantom(chain, torus, mode)
-    top = integer(order, "order", 0)
+    top = order_of(order)
     chosen = None if frequencies is None else _chosen(frequencies, (phantom, *torus))
     if digits is not None and ring is not None:
         allowed = "none where digits are given"
@@ -301,7 +304,7 @@ def phantom_series(
     ring: str | None = None,
     digits: int | None = None,
     progress: Progress | None = None,
-) -> LindstedtSeries | TravellingSeries:
+) -> LindstedtSeries:
     """The series of (mode, *seeds) cut at the first power of the mode's amplitude.
 
     frequencies : in the order (mode, *seeds).
@@ -322,7 +325,7 @@ def phantom_series(
     return named_series(RINGS[name], chain, space, frequencies, order, progress)
 
 
-def of_phantom(series: LindstedtSeries | TravellingSeries) -> NormalFrequencySeries:
+def of_phantom(series: LindstedtSeries) -> NormalFrequencySeries:
     """What a cut series says of the frequency of its first seed."""
     mode, *seeds = series.seeds
     parts = []

@@ -15,8 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symfpu.normal.linearised import Linearised, Mask, Values
-from symfpu.refinement.equation import Floats
+from symfpu.chain.projections.projection import Mask
+from symfpu.normal.linearised import Linearised, Values
+from symfpu.refinement.lattice import Floats
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 600, 150  # unknowns
 NEARNESS = 1.0  # divisors up to so many times the largest slope belong to the block

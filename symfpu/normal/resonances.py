@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
-from symfpu.normal.linearised_standing import coupled_groups
-from symfpu.refinement.equation import Ints
-from symfpu.refinement.lattice import dilated
+from symfpu.normal.standing import coupled_groups
+from symfpu.numbers.public import public
+from symfpu.refinement.lattice import Ints, dilated
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 
 class Frequencies(Protocol):
@@ -30,7 +29,7 @@ class Frequencies(Protocol):
     def frequencies(self) -> Mapping[int, complex]: ...
 
     @property
-    def torus(self) -> QuasiPeriodic | RingTorus: ...
+    def torus(self) -> QuasiPeriodic: ...
 
 
 PARAMETRIC, SUM, DIFFERENCE, OWN = "parametric", "sum", "difference", "own"
@@ -40,6 +39,7 @@ LONGEST = 24  # sum |nu_i| up to which it is looked for
 MOST = 300_000  # harmonics that are looked through
 
 
+@public
 @dataclass(frozen=True)
 class ParametricResonance:
     """How far a combination of normal frequencies is from one of the torus.

@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from symfpu.chain.projections.standing import is_sine
 from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress, unheard
 from symfpu.normal.beside import beside, nearness
 from symfpu.normal.collisions import undecided_modes
 from symfpu.normal.digits import PreciseModes
 from symfpu.normal.linearised import Linearised, Values
-from symfpu.normal.linearised_standing import is_sine, is_standing
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.names import Names
 from symfpu.normal.reduction import (
@@ -27,19 +27,18 @@ from symfpu.normal.reduction import (
 from symfpu.normal.resonances import OWN, ParametricResonance
 from symfpu.normal.torus import (
     LENGTH,
-    PRECISE,
     Flows,
-    Solution,
     checked_modes,
     checked_solution,
+    in_digits,
     resonances_near,
     second_order,
 )
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer
-from symfpu.refinement.digits import Failure
-from symfpu.refinement.equation import Ints
+from symfpu.refinement.iterative_refinement import Failure
+from symfpu.refinement.lattice import Ints
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 TOLERANCE = 1e-10  # residual of a mode whose harmonics are enough
 SHOWN_DIVISORS = 5
@@ -62,8 +61,9 @@ DISPLACED = "to displace the waves costs less than doubles show"
 LARGER = "take larger amplitudes, or leave the mode out by modes="
 
 
+@public
 def normal_modes(
-    solution: Solution,
+    solution: QuasiPeriodic,
     *,
     modes: Iterable[int] | None = None,
     resonance_length: int = LENGTH,
@@ -73,8 +73,8 @@ def normal_modes(
 
     solution : of any potential and of any number of angles, refined: its residual is at most
         1e-9. With fixed ends, or of a ring: travelling waves, or what `unfold` gave.
-        Dimensionless. Of one that was refined to many digits (PreciseTorus, PreciseOrbit)
-        frequencies and eigenfunctions have as many, by sweeps in fixed point; any other is rounded
+        Dimensionless. Of one that was refined to many digits (PreciseTorus)
+        frequencies and eigenfunctions have as many, by iterative refinement; any other is rounded
         to doubles, as `solution.in_doubles()` is.
     modes : which of the N-1-s modes, of a ring signed; default all that can be told from others.
     resonance_length : largest sum |nu_i| of the resonances listed.
@@ -105,7 +105,7 @@ def normal_modes(
     found, missing = search.each(chosen, tell)
     named = modes is not None
     _require(found, missing, named=named)
-    if isinstance(solution, PRECISE):
+    if in_digits(solution):
         found, others = _in_digits(solution, found, length, tell)
         missing |= others
         _require(found, missing, named=named)
@@ -147,7 +147,7 @@ def _in_digits(
 
 
 def followed_modes(
-    solution: Solution,
+    solution: QuasiPeriodic,
     before: NormalModes | None,
     *,
     modes: Iterable[int] | None = None,
@@ -171,7 +171,7 @@ def followed_modes(
     return search.result(solution, found, missing), missing
 
 
-Between = Callable[[float], Solution]
+Between = Callable[[float], QuasiPeriodic]
 
 
 class Before(NamedTuple):
@@ -191,7 +191,7 @@ class _Search:
 
     def __init__(
         self,
-        torus: Solution,
+        torus: QuasiPeriodic,
         length: int,
         before: Before | None = None,
         between: Between | None = None,
@@ -237,7 +237,7 @@ class _Search:
 
     def result(
         self,
-        solution: Solution,
+        solution: QuasiPeriodic,
         found: dict[int, NormalMode],
         missing: Mapping[int, NoNormalModes],
     ) -> NormalModes:
@@ -329,7 +329,7 @@ class _Search:
     def _is_cosine(self, q: int) -> bool:
         """Whether a mode is a cosine about standing waves, which no shift of the angles is."""
         torus = self._torus
-        standing = isinstance(torus, RingTorus) and is_standing(torus)
+        standing = torus.stands
         return standing and not is_sine(torus.chain, q)
 
     def _apart(self, found: NormalMode, rate: float, others: dict[int, NormalMode]) -> bool:

@@ -24,13 +24,12 @@ from symfpu.normal.phantom import (
 from symfpu.normal.resonances import resonances_of
 from symfpu.normal.torus import LENGTH, second_order
 from symfpu.numbers.arithmetic import DOUBLES, GUARD_DIGITS, MULTIPRECISION
-from symfpu.numbers.typed import integer
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import integer, order_of
+from symfpu.refinement.guesses import require_torus
 from symfpu.series.arguments import digits_of
 from symfpu.series.series import LindstedtSeries
-from symfpu.series.travelling import TravellingSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
-from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
-from symfpu.tori.travelling import require_travelling
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
 
 STEPS, STEPS_DIGITS = 30, 60  # with doubles, with digits
 LARGEST_MOVE = 0.1  # of sigma, relative, away from the guess
@@ -40,8 +39,9 @@ ROUNDING = 8 * np.finfo(float).eps  # relative to sigma, what a solution may lea
 DECIMALS = 25  # of trials in doubles: those of their shifts
 
 
+@public
 def solve_normal_frequency(
-    solution: QuasiPeriodic | RingTorus,
+    solution: QuasiPeriodic,
     mode: int,
     order: int,
     *,
@@ -72,19 +72,19 @@ def solve_normal_frequency(
     >>> abs(found.sigma - normal_modes(breather).frequencies[3]) < 1e-12
     True
     """
-    if isinstance(solution, RingTorus):
-        require_travelling(solution)
+    torus = require_solution(solution, "solution")
+    if torus.chain.periodic:
+        require_torus(torus)
+        solution = torus.in_doubles()
         if digits is not None:
             raise InputError("digits", digits, "none on a ring: doubles", "leave it out")
-    else:
-        require_solution(solution, "solution")
     q = integer(mode, "mode", min(solution.chain.mode_numbers))
     normal = [n for n in solution.chain.mode_numbers if n not in solution.seeds]
     if q not in normal:
         allowed = f"a mode that is no seed, one of {normal}"
         raise InputError("mode", mode, allowed, "name a normal mode")
     first = 2 // solution.chain.degree_step
-    top = integer(order, "order", 0)
+    top = order_of(order)
     if top < first:
         allowed = f"{first} or more, the order of the first correction"
         raise InputError("order", order, allowed, f"take {first} or more")
@@ -99,7 +99,7 @@ class _Search:
 
     def __init__(
         self,
-        solution: QuasiPeriodic | RingTorus,
+        solution: QuasiPeriodic,
         q: int,
         order: int,
         digits: int | None,
@@ -112,7 +112,7 @@ class _Search:
         pairs = zip(solution.seeds, solution.frequencies, strict=True)
         self.omega = dict(sorted(pairs))
         with self.numbers.context(digits):
-            A = amplitudes_by_seed(solution)
+            A = amplitudes_of(solution)
             squares = [0, *(A[n] ** 2 for n in self.omega)]
             self.squares = self.numbers.array(squares)
 
@@ -120,7 +120,7 @@ class _Search:
     def _linear(self) -> float:
         return float(self.chain.linear_frequency(self.q % self.chain.N))
 
-    def solved(self) -> LindstedtSeries | TravellingSeries:
+    def solved(self) -> LindstedtSeries:
         """The series at the solution."""
         guesses = second_order(self.solution)
         start = guesses[self.q] - self._linear
@@ -134,9 +134,7 @@ class _Search:
             raise NoNormalModes(self.q, guesses[self.q], self._nearest(guesses))
         return found
 
-    def _secant(
-        self, x: Any, y: Any, most: float
-    ) -> LindstedtSeries | TravellingSeries | None:
+    def _secant(self, x: Any, y: Any, most: float) -> LindstedtSeries | None:
         """From two trials; None where it runs away or finds no end."""
         x, y = self.numbers.array([x, y])
         start, (left, _) = x, self._at(x)
@@ -160,7 +158,7 @@ class _Search:
             return ROUNDING * linear
         return mpmath.mpf(10) ** -self.digits * linear
 
-    def _at(self, shift: Any) -> tuple[Any, LindstedtSeries | TravellingSeries]:
+    def _at(self, shift: Any) -> tuple[Any, LindstedtSeries]:
         """Series - shift at a trial shift, and the series."""
         self.trials += 1
         self.tell(f"sigma_{self.q}, trial {self.trials}", self.trials / self._steps)

@@ -4,35 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import Any
 
 import mpmath
 import numpy as np
 
-from symfpu.breathers.digits import PreciseOrbit
-from symfpu.chain.chain import require_fixed_ends
 from symfpu.chain.frequency_shift import shift_coefficients
 from symfpu.errors import InputError
-from symfpu.normal.linearised import Linearised, LinearisedFlow, coefficients_by_harmonic
-from symfpu.normal.linearised_standing import (
-    LinearisedStanding,
-    coupled_groups,
-    folded,
-    is_standing,
-)
-from symfpu.normal.linearised_waves import LinearisedWaves, wave_rows
+from symfpu.normal.linearised import Linearised, coefficients_by_harmonic
 from symfpu.normal.resonances import ParametricResonance, resonances_of
+from symfpu.normal.standing import coupled_groups
 from symfpu.numbers.arithmetic import DOUBLES, arithmetic_of
 from symfpu.numbers.typed import integer
 from symfpu.refinement.digits import PreciseTorus
-from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.harmonics import chosen_harmonics
+from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.tori import USEFUL
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
-from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.unfolding import folded
 
-Solution: TypeAlias = QuasiPeriodic | RingTorus
-PRECISE = (PreciseTorus, PreciseOrbit)  # solutions whose digits are those of the equations
 REFINED = USEFUL  # residual of a torus, relative, above which it is refused
 HEIGHTS = (1e-8, 1e-11, 1e-14, 1e-17)  # parts of the largest coefficient of the torus
 SMALLEST_KEPT = (
@@ -41,22 +31,19 @@ SMALLEST_KEPT = (
 LENGTH = 12  # sum |nu_i| of the resonances that are listed
 
 
-def checked_solution(solution: object) -> Solution:
+def checked_solution(solution: object) -> QuasiPeriodic:
     """The solution in doubles; InputError for what is no refined torus."""
-    if isinstance(solution, RingTorus):
-        if is_standing(solution):
-            folded(solution)
-        torus: Solution = solution
-    else:
-        require_solution(solution, "solution")
-        assert isinstance(solution, QuasiPeriodic)
-        require_fixed_ends(solution.chain)
-        torus = solution.in_doubles()
+    torus = require_solution(solution, "solution").in_doubles()
     require_refined(torus, REFINED)
     return torus
 
 
-def require_refined(torus: Solution, level: float) -> None:
+def in_digits(torus: QuasiPeriodic) -> bool:
+    """Whether its normal modes and its twist have digits: on a ring they are in doubles."""
+    return isinstance(torus, PreciseTorus) and not torus.chain.periodic
+
+
+def require_refined(torus: QuasiPeriodic, level: float) -> None:
     """InputError for a torus whose relative residual is above a level."""
     residual = torus.residual()
     if not residual <= level:
@@ -65,7 +52,7 @@ def require_refined(torus: Solution, level: float) -> None:
         raise InputError("solution", given, allowed, "refine it first: refine(solution)")
 
 
-def checked_modes(torus: Solution, modes: Iterable[int] | None) -> tuple[int, ...]:
+def checked_modes(torus: QuasiPeriodic, modes: Iterable[int] | None) -> tuple[int, ...]:
     """Those asked for, ascending; InputError for what is no normal mode."""
     normal = [q for q in torus.chain.mode_numbers if q not in torus.seeds]
     if modes is None:
@@ -80,16 +67,16 @@ def checked_modes(torus: Solution, modes: Iterable[int] | None) -> tuple[int, ..
     return tuple(sorted(given))
 
 
-def second_order(torus: Solution) -> dict[int, float]:
+def second_order(torus: QuasiPeriodic) -> dict[int, float]:
     """Omega_q with the closed shift of second order by the amplitudes of the seeds, by mode.
 
     Of a ring without it, but for the sines about standing waves.
     """
     chain = torus.chain
-    if isinstance(torus, RingTorus):
+    if chain.periodic:
         linear = chain.frequencies()
         known = dict(zip(chain.mode_numbers, linear.tolist(), strict=True))
-        return known | (second_order(folded(torus)) if is_standing(torus) else {})
+        return known | (second_order(folded(torus)) if torus.stands else {})
     squares = chain.frequencies() ** 2
     cubic, quartic = (float(chain.potential.coefficient(n)) for n in (3, 4))
     guesses = {}
@@ -107,7 +94,7 @@ def second_order(torus: Solution) -> dict[int, float]:
 class Flows:
     """Linearised flows of one torus with ever more harmonics, made when they are needed."""
 
-    def __init__(self, torus: Solution) -> None:
+    def __init__(self, torus: QuasiPeriodic) -> None:
         self._torus, self._known = torus, _kept_rows(torus)
         self._made: list[Linearised] = []
 
@@ -119,57 +106,39 @@ class Flows:
             yield self._made[place]
 
 
-def finest_flow(torus: Solution) -> Linearised:
+def finest_flow(torus: QuasiPeriodic) -> Linearised:
     """The one with the most harmonics."""
     return _flow(torus, _kept_rows(torus), HEIGHTS[-1])
 
 
 def _flow(
-    torus: Solution, known: Mapping[tuple[int, ...], Floats], height: float
+    torus: QuasiPeriodic, known: Mapping[tuple[int, ...], Floats], height: float
 ) -> Linearised:
     """With harmonics of coefficients above a part of the largest; known : of `_kept_rows`."""
-    return _linearised(torus, _harmonics_of(torus, known, height))
+    return Linearised(torus, _harmonics_of(torus, known, height))
 
 
-def _kept_rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
+def _kept_rows(torus: QuasiPeriodic) -> dict[tuple[int, ...], Floats]:
     """Coefficients of a torus by harmonic, without those that are rounding."""
-    known = _rows(torus)
+    known = coefficients_by_harmonic(torus)
     largest = max(float(np.abs(row).max()) for row in known.values())
     least = SMALLEST_KEPT * largest
     return {nu: row for nu, row in known.items() if np.abs(row).max() > least}
 
 
 def _harmonics_of(
-    torus: Solution, known: Mapping[tuple[int, ...], Floats], height: float
+    torus: QuasiPeriodic, known: Mapping[tuple[int, ...], Floats], height: float
 ) -> Ints:
     """Those of coefficients above a part of the largest, (H, s); known : of `_kept_rows`."""
     columns = len(next(iter(known.values())))
-    travels = isinstance(torus, RingTorus) and not is_standing(torus)
+    travels = torus.travels
     functions = 1 if travels else (columns + 2) // 2
     chosen, _ = chosen_harmonics(known, functions, len(torus.seeds), height)
     return chosen
 
 
-def _rows(torus: Solution) -> dict[tuple[int, ...], Floats]:
-    """Coefficients of a torus by harmonic."""
-    if not isinstance(torus, RingTorus):
-        return coefficients_by_harmonic(torus)
-    if is_standing(torus):
-        return coefficients_by_harmonic(folded(torus))
-    return wave_rows(torus)
-
-
-def _linearised(torus: Solution, harmonics: Ints) -> Linearised:
-    """The linearised flow in these harmonics and their negatives."""
-    if not isinstance(torus, RingTorus):
-        return LinearisedFlow(torus, harmonics)
-    if is_standing(torus):
-        return LinearisedStanding(torus.chain, folded(torus), harmonics)
-    return LinearisedWaves(torus, harmonics)
-
-
 def resonances_near(
-    torus: Solution, sigma: Mapping[int, Any], length: int
+    torus: QuasiPeriodic, sigma: Mapping[int, Any], length: int
 ) -> list[ParametricResonance]:
     """Those of real parts in doubles or in digits; a distance has all its digits."""
     omega = tuple(float(w) for w in torus.frequencies)
@@ -177,7 +146,7 @@ def resonances_near(
     found: list[ParametricResonance] = []
     for chain, part in coupled_groups(torus, doubles):
         found += resonances_of(chain, torus.seeds, omega, part, length)
-    if isinstance(torus, PRECISE) and arithmetic_of(list(sigma.values())) is not DOUBLES:
+    if in_digits(torus) and arithmetic_of(list(sigma.values())) is not DOUBLES:
         found = _in_all_digits(torus, found, sigma)
     return sorted(found, key=lambda r: abs(r.distance))
 

@@ -53,8 +53,11 @@ class Arithmetic:
         return float(value)
 
     def array(self, values: Any) -> NDArray[Any]:
-        """The values as an array; TypeError or ValueError where they are no numbers."""
-        return np.asarray(values, dtype=np.float64)
+        """The values as an array; TypeError or ValueError where they are no real numbers."""
+        array = np.asarray(values)
+        if array.dtype.kind == "c":
+            raise TypeError("complex numbers are no doubles")
+        return array.astype(np.float64, copy=False)
 
     def zeros(self, shape: tuple[int, ...]) -> NDArray[Any]:
         """An array of zeros."""
@@ -237,12 +240,13 @@ def _dressed(values: Any, digits: int) -> Any:
 
 
 def arithmetic_of(values: Any) -> Arithmetic:
-    """Multiprecision for arrays with an mpf in them, else doubles."""
+    """Multiprecision for arrays with an mpf or mpc in them, else doubles."""
     array = np.asarray(values)
     if array.dtype != object:
         return DOUBLES
-    has_mpf = any(isinstance(x, mpmath.mpf) for x in array.flat)
-    return MULTIPRECISION if has_mpf else DOUBLES
+    kinds = mpmath.mpf, mpmath.mpc
+    has_digits = any(isinstance(x, kinds) for x in array.flat)
+    return MULTIPRECISION if has_digits else DOUBLES
 
 
 def integers(values: NDArray[Any]) -> tuple[NDArray[np.object_], NDArray[np.int64]]:
@@ -301,7 +305,11 @@ def mpf(value: Any) -> Any:
 
 
 def text(value: Any, digits: int) -> str:
-    """A double or an mpf with so many significant digits."""
+    """A double, an mpf or an mpc with so many significant digits; of mpc as complex numbers are."""
+    if isinstance(value, mpmath.mpc):
+        real, imaginary = text(value.real, digits), text(value.imag, digits)
+        sign = "" if imaginary.startswith("-") else "+"
+        return f"({real}{sign}{imaginary}j)"
     if isinstance(value, mpmath.mpf):
         return str(mpmath.nstr(value, digits))
     return f"{float(value):.{digits}g}"

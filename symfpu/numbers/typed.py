@@ -20,6 +20,10 @@ from symfpu.errors import InputError
 # bits; longer fractions are written in hexadecimal, which no limit of Python concerns
 LONGEST_DECIMAL = 3000
 LONGEST_NUMBER = 1000  # characters of a number, and the largest power of ten in it
+LARGEST_LENGTH = 10**6  # bonds; a list of all modes still fits into any memory
+LARGEST_INTEGER = 2**63 - 1  # what machines count with
+HIGHEST_ORDER = 10_000  # of any series or set of modes
+SMALLEST_ENERGY = Fraction(1, 10**50)
 Number = int | float | str | Fraction | Decimal
 
 
@@ -73,13 +77,46 @@ def _of_binary(value: Any) -> Fraction:
 
 
 def integer(value: object, argument: str, least: int) -> int:
-    """`value` as an int not below `least`; InputError naming `argument` otherwise."""
+    """`value` as an int from `least` to LARGEST_INTEGER; InputError naming `argument` otherwise."""
     allowed = f"an integer from {least} up"
     if isinstance(value, bool) or not isinstance(value, Integral):
         raise InputError(argument, value, allowed, "pass a whole number")
     number = int(value)
     if number < least:
         raise InputError(argument, number, allowed, f"take {least} or more")
+    if number > LARGEST_INTEGER:
+        raise InputError(argument, number, f"{allowed} to 2^63 - 1", "take a smaller one")
+    return number
+
+
+def random_seed(value: object, argument: str = "seed") -> int:
+    """Any whole number from 0 up: NumPy's generators take seeds of every length."""
+    if isinstance(value, Integral) and int(value) > LARGEST_INTEGER:
+        return int(value)
+    return integer(value, argument, 0)
+
+
+def length_of(N: object, least: int = 2) -> int:
+    """A number of bonds from `least` to LARGEST_LENGTH; InputError for any other."""
+    return integer_between(N, "N", least, LARGEST_LENGTH, "a shorter chain")
+
+
+def order_of(order: object, least: int = 0, *, argument: str = "order") -> int:
+    """An order from `least` to HIGHEST_ORDER; InputError for any other.
+
+    What a series of that order needs is another question: `check_size` says the highest that fits.
+    """
+    return integer_between(order, argument, least, HIGHEST_ORDER, "a lower order")
+
+
+def integer_between(
+    value: object, argument: str, least: int, most: int, advice: str
+) -> int:
+    """An integer from `least` to `most`; InputError for any other."""
+    number = integer(value, argument, least)
+    if number > most:
+        allowed = f"an integer from {least} to {most}"
+        raise InputError(argument, number, allowed, f"take {advice}")
     return number
 
 
@@ -162,6 +199,15 @@ def part(value: Number, name: str) -> float:
         allowed = "a number between 0 and 1"
         raise InputError(name, value, allowed, "take a part of the whole such as 1e-3")
     return found
+
+
+def energy_of(value: Number, argument: str = "energy") -> Fraction:
+    """An energy H > 0 that doubles can hold, with its powers; InputError for any other."""
+    energy = exact(value, argument)
+    if not SMALLEST_ENERGY <= energy <= 1 / SMALLEST_ENERGY:
+        allowed = "a positive number of size 1e-50 to 1e50"
+        raise InputError(argument, value, allowed, "rescale the amplitudes")
+    return energy
 
 
 def fraction_text(value: Fraction) -> str:

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from symfpu.breathers.balance import PeriodicOrbit, breather_at_amplitude, periodic_orbit
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.families.continuation import Member
 from symfpu.families.family import Family
 from symfpu.families.following import family
+from symfpu.families.members import Member
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import Number
 from symfpu.paper.printed import FIG9_BREATHER

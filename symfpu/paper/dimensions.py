@@ -33,6 +33,7 @@ VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}
 # hundredths (docs/performance.md)
 GALI_STEP, CONFIRMING_STEP = 0.4, 0.8
 FORETOLD_TIME, FORETOLD_SAMPLES, FORETOLD_FRAMES = 1e11, 440, 4
+FIRST_LOOK = 5.0  # decades of time, from which it is looked which dimension frames show
 SETTLED_DECADES = 0.3  # of the last value of an index
 
 
@@ -166,6 +167,17 @@ class TorusForecast:
 def foretold_dimension(frames: tuple[ForetoldIndices, ...], T: float) -> TorusDimension:
     """What frames that are followed to T say together."""
     return together([frame.dimension(T) for frame in frames])
+
+
+def first_shown(frames: tuple[ForetoldIndices, ...]) -> dict[int, float]:
+    """The first time, of two in a decade, at which frames show a dimension together."""
+    found: dict[int, float] = {}
+    last = float(np.log10(frames[0].times[-1]))
+    for T in 10 ** np.arange(FIRST_LOOK, last + 0.25, 0.5):
+        value = foretold_dimension(frames, float(T)).value
+        if value is not None:
+            found.setdefault(value, float(T))
+    return found
 
 
 def indices_panel(name: str, title: str, seen: FigureIndices) -> Panel:

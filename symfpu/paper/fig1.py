@@ -35,8 +35,8 @@ def figure1(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     data = figure1_data(progress)
     torus = data.torus
     exact = refine(torus, progress=labelled(progress, "fig1: exact torus"))
-    Q = np.asarray(torus.positions(0.0), dtype=float)
-    P = np.asarray(torus.momenta(0.0), dtype=float)
+    Q = np.asarray(torus.Q(0.0), dtype=float)
+    P = np.asarray(torus.P(0.0), dtype=float)
     forecast = TorusForecast(exact, VECTORS["fig1"][1])
     seen = figure_alignment("fig1", (Q, P), progress, folder, forecast, full=full)
     return PaperFigure(

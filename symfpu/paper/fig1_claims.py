@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -181,10 +183,12 @@ def _near(value: float, printed: float) -> bool:
     return printed / SIZE_FACTOR <= value <= SIZE_FACTOR * printed
 
 
-def localized_claim(exact: RefinedTorus) -> Claim:
+def localized_claim(
+    exact: RefinedTorus, floor_of: Callable[[RefinedTorus], Any] = spectrum_floor
+) -> Claim:
     """Exponential decay beyond the seeds."""
     spectrum = np.asarray(exact.average_spectrum(), dtype=float)
-    floor = spectrum_floor(exact)
+    floor = floor_of(exact)
     fit = fit_profile(exact.chain, spectrum, len(exact.seeds), floor=floor)
     decays = -fit.line.slope > SLOPE_ERRORS * fit.errors[0]
     verdict = judged(decays and fit.scatter < LINE_SCATTER_DECADES)

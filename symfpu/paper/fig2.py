@@ -5,7 +5,9 @@ The claims are those of section 4.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +65,7 @@ def figure2(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     torus = printed_torus(row)
     exact = refine(torus, progress=labelled(progress, "fig2: exact torus"))
     orbit = integrated_orbit("fig2 PLn", row.chain, torus, TIME, progress)
-    start = (torus.positions(0.0), torus.momenta(0.0))
+    start = (torus.Q(0.0), torus.P(0.0))
     progress("fig2: indices foretold", NO_FRACTION)
     forecast = TorusForecast(exact, VECTORS["fig2"][1])
     frames = forecast.frames()
@@ -126,7 +128,7 @@ def _profile_claims(profiles: dict[str, Floats]) -> tuple[Claim, Claim]:
 def identical_claim(torus: QTorus, orbit: Orbit) -> Claim:
     """How far the integrated orbit leaves the series, and from when on."""
     times = orbit.times
-    there = torus.positions(times)
+    there = torus.Q(times)
     apart = np.max(np.abs(orbit.Q - there), axis=1)
     off = apart / np.max(np.abs(there))
     late = times[off > IDENTICAL_SHARE]
@@ -139,10 +141,12 @@ def identical_claim(torus: QTorus, orbit: Orbit) -> Claim:
     return Claim("4, note", text, "", ours, judged(not late.size, for_long))
 
 
-def exponential_claim(exact: RefinedTorus) -> Claim:
+def exponential_claim(
+    exact: RefinedTorus, floor_of: Callable[[RefinedTorus], Any] = spectrum_floor
+) -> Claim:
     """A straight line beyond the seeds."""
     spectrum = np.asarray(exact.average_spectrum(), dtype=float)
-    floor = spectrum_floor(exact)
+    floor = floor_of(exact)
     fit = fit_profile(exact.chain, spectrum, len(exact.seeds), floor=floor)
     text = "strong localization in the first four modes, "
     text += "then an exponential decay of e_kappa with kappa"

@@ -121,7 +121,7 @@ def distance_claim(torus: QTorus, Q: Floats) -> Claim:
     Q : of the FPU-trajectory.
     """
     mu = torus.series.chain.mu
-    there = np.asarray(torus.positions(0.0), dtype=float)
+    there = np.asarray(torus.Q(0.0), dtype=float)
     off = float(np.abs(there - Q).max() / np.abs(Q).max())
     ours = f"mu = {mu:.5f}; they begin {off:.2g} = {off / mu:.2g} mu "
     ours += "of the largest coordinate apart"

@@ -6,7 +6,7 @@ A fixed fraction of the modes at fixed energy a particle. The claims are those o
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -287,10 +287,12 @@ def validity_claim(trends: Mapping[str, Trend]) -> Claim:
     return Claim("6.1.1", text, "", ours, judged(ends, bool(left)))
 
 
-def condition_claim(line: PrintedLine) -> Claim:
+def condition_claim(
+    line: PrintedLine, width: Callable[[Chain, float], float] = least_packet
+) -> Claim:
     """The width at which lambda = 1."""
     chain, eps = line.chains[-1], line.specific_energy
-    least = least_packet(chain, eps)
+    least = width(chain, eps)
     if chain.alpha:
         formula = "alpha^(1/2) eps^(1/4) N"
         fourth_power = float(chain.alpha**2 * eps)

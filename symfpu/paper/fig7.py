@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.balance import periodic_orbit
-from symfpu.breathers.digits import periodic_orbit_digits
+from symfpu.breathers.precise_orbit import periodic_orbit_digits
 from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import Progress
 from symfpu.localization.profiles import fpu_trajectory

@@ -8,14 +8,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.breathers.balance import periodic_orbit
-from symfpu.breathers.digits import periodic_orbit_digits
+from symfpu.breathers.precise_orbit import periodic_orbit_digits
 from symfpu.dynamics.dimension import TorusDimension
 from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.panels import Panel
@@ -40,16 +40,17 @@ from symfpu.paper.breather_profiles import (
 )
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.dimensions import (
-    FORETOLD_FRAMES,
     FULL_TIME,
     VECTORS,
     FigureIndices,
-    Foretold,
+    TorusForecast,
     figure_alignment,
+    first_shown,
+    foretold_dimension,
     indices_panel,
     integrated_text,
 )
-from symfpu.paper.fig9_tori import approach, tori_claim
+from symfpu.paper.fig9_tori import approach, distance_from, five_angles, tori_claim
 from symfpu.paper.judgements import SIMILAR_DECADES, same_profile
 from symfpu.paper.printed import FIG9_PACKETS, FIG9_RECURRENCE, PrintedTorus
 from symfpu.paper.starts import (
@@ -62,7 +63,6 @@ from symfpu.paper.starts import (
     profile_panel,
 )
 from symfpu.paper.table import rounds_to
-from symfpu.paper.toda_growth import TodaGrowth, toda_growth
 from symfpu.tori.torus import QTorus
 
 Floats = NDArray[np.float64]
@@ -71,8 +71,6 @@ TIME, LOOKS = 5e4, 12501
 SHOWN_EVERY = 5  # of these looks, in the pictures
 AVERAGING_LOOKS = 20
 PRINTED_DIMENSION, DOMINANT = 5, 4  # of the torus; without the last of its small scales
-FORETOLD_LAST = 1e13  # time; the paper's is 1e9
-SHOWN_RATES = 6
 TIME_TOLERANCE = 0.05  # relative: a time that the paper reads off a picture
 RETURNED_SHARE = 0.95  # of the energy back in its modes: "a nearly complete return"
 DIGITS = 40
@@ -96,10 +94,11 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     exact = integrated_orbit("fig9 breather", chain, newton, TIME, progress, samples=looks)
     series = integrated_orbit("fig9 PLn", chain, torus, TIME, progress, samples=looks)
     main = orbits[PRINTED_E]
-    growth = toda_growth(chain, main.Q[0], main.P[0])
     start = (main.Q[0], main.P[0])
-    foretell = partial(_foretold, growth)
-    seen = figure_alignment("fig9", start, progress, folder, foretell, full=full)
+    progress("fig9: what five angles foretell", NO_FRACTION)
+    near = five_angles()
+    forecast = TorusForecast(near, VECTORS["fig9"][1])
+    seen = figure_alignment("fig9", start, progress, folder, forecast, full=full)
     times = main.times[::SHOWN_EVERY]
     energies = newton.in_doubles().harmonic_energies(times)
     breather = np.asarray(energies, dtype=float) / float(newton.energy())
@@ -114,7 +113,7 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     spectra = profile_panel("fig9c", title_c, chain, profiles, law, floors=floors)
     indices = "Fig. 9(d): alignment indices of the FPU-trajectory"
     if seen.beyond is not None:
-        indices += ", foretold for Toda's chain"
+        indices += ", foretold from a torus of five angles"
     panels = (
         *_energy_panels(times, breather, trajectory),
         spectra,
@@ -127,7 +126,7 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
         gain_claim(torus),
         pairs_claim({row.label: closing(row, torus)}),
         law_claim("6.4.3", profiles["Newton"], law),
-        frequencies_claim(seen, growth),
+        frequencies_claim(seen, forecast.frames(), distance_from(near, main.Q[0])),
         tori_claim(approach(chain, row.energy, progress)),
         *packet_claims(row),
     )
@@ -225,26 +224,25 @@ def constancy_claim(breather: Floats, orbit: Orbit) -> Claim:
     return Claim("6.4.3", text, "", ours, judged(moves <= CONSTANT_DECADES))
 
 
-def _foretold(growth: TodaGrowth, times: Floats) -> Foretold:
-    """Of the frame that is integrated, on the torus of the Toda chain."""
-    return Foretold(times, *growth.indices(times, VECTORS["fig9"][1], 0))
-
-
-def frequencies_claim(seen: FigureIndices, growth: TodaGrowth) -> Claim:
+def frequencies_claim(
+    seen: FigureIndices, frames: tuple[ForetoldIndices, ...], off: float
+) -> Claim:
     """The dimension of the torus on which the FPU-trajectory lies, at the paper's time.
 
-    Foretold from the torus of the Toda chain through the same state; the indices integrated to a
-    shorter time are beside what is foretold for it.
+    frames : foretold from the torus of five angles near it, which starts `off` of the largest
+    coordinate beside it; the indices integrated to a shorter time are beside what is foretold
+    for it.
     """
-    vectors, last = seen.found.vectors, float(seen.found.times[-1])
-    said = growth.dimension(FULL_TIME, vectors, FORETOLD_FRAMES)
-    early = growth.dimension(last, vectors, FORETOLD_FRAMES)
-    shown = growth.first_shown(vectors, FORETOLD_FRAMES, FORETOLD_LAST)
-    rates = ", ".join(f"{rate:.1e}" for rate in growth.rates[:SHOWN_RATES])
-    when = ", ".join(f"{s} from {T:.0e}" for s, T in shown.items())
-    ours = "foretold from the Toda chain's torus through the same state, whose directions grow "
-    ours += f"at the rates {rates}, ...: {said.verdict} at {FULL_TIME:.0e}; as dimension {when}; "
-    ours += f"at {last:.0e} {_best(early)}; {integrated_text(seen)}"
+    last = float(seen.found.times[-1])
+    said, early = (foretold_dimension(frames, T) for T in (FULL_TIME, last))
+    rates = ", ".join(f"{rate:.1e}" for rate in frames[0].rates)
+    when = ", ".join(f"{s} from {T:.0e}" for s, T in first_shown(frames).items())
+    ours = (
+        f"foretold from a torus of {len(frames[0].rates)} angles by Newton's method, which "
+    )
+    ours += f"starts {off:.1e} of the largest coordinate beside the trajectory and whose "
+    ours += f"directions grow at the rates {rates}: {said.verdict} at {FULL_TIME:.0e}; "
+    ours += f"as dimension {when}; at {last:.0e} {_best(early)}; {integrated_text(seen)}"
     text = "five incommensurable frequencies: G_2, G_3 constant from the start, "
     text += "G_4, G_5 from 5e7 on, a torus of dimension 5"
     verdict = judged(said.value == PRINTED_DIMENSION, said.value == DOMINANT)

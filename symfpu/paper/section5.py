@@ -19,8 +19,9 @@ Modes = tuple[int, ...]
 PROVED_ORDER = 5
 SEARCH_CHAIN, SEARCH_ORDER = 8, 2  # of the search for exceptions in the beta model
 SINGLE_ORDERS = 12  # of the single seeds of Eq. qbre
-SIZES = (7, 12, 32)  # a prime, one with commensurable frequencies, the paper's
-SIZES_TEXT = "N = 7, 12, 32, both models"
+# a prime, half an odd number of bonds, commensurable frequencies, the paper's
+SIZES = (7, 10, 12, 32)
+SIZES_TEXT = "N = 7, 10, 12, 32, both models"
 LONG_CHAIN, PACKET_WIDTHS = 200, range(1, 7)  # "N large"; numbers s of seeds
 PACKET_ORDERS = {"alpha": 8, "beta": 4}  # of example iii
 HIGH_CHAIN, HIGH_WIDTH = 200, 4  # N and s of example iv

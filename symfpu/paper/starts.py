@@ -48,9 +48,9 @@ EPS = float(np.finfo(float).eps)
 class Starting(Protocol):
     """Where an orbit can start: tori and breathers."""
 
-    def positions(self, t: ArrayLike) -> Any: ...
+    def Q(self, t: ArrayLike) -> Any: ...
 
-    def momenta(self, t: ArrayLike) -> Any: ...
+    def P(self, t: ArrayLike) -> Any: ...
 
 
 def printed_row(label: str) -> PrintedTorus:
@@ -96,7 +96,7 @@ def integrated_orbit(
     if isinstance(start, tuple):
         Q, P = start
     else:
-        Q, P = start.positions(0.0), start.momenta(0.0)
+        Q, P = start.Q(0.0), start.P(0.0)
     return integrate(
         chain,
         np.asarray(Q, dtype=float),

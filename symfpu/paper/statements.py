@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.commensurability import frequency_rank
 from symfpu.chain.propagation import excitation_sequence, reachable_modes
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.localization.laws import profile_law
+from symfpu.localization.laws import ProfileLine, profile_law
 from symfpu.paper.appendix_a_claims import algorithm_claim
 from symfpu.paper.breather_claims import breather_claims
 from symfpu.paper.claims import Claim, PaperFigure, judged
@@ -36,7 +36,6 @@ SLOPE_CHAIN = 64
 # the first two have the same alpha^2 eps
 SLOPE_PAIRS = (("0.5", 1e-7), ("0.25", 4e-7), ("0.33", 1e-8), ("0.1", 1e-8))
 SLOPE_TOLERANCE = 1e-9  # relative: a formula in doubles
-THIRDS = 3
 
 
 def statements(folder: Path, progress: Progress, *, full: bool = False) -> PaperFigure:
@@ -62,11 +61,13 @@ def statements(folder: Path, progress: Progress, *, full: bool = False) -> Paper
     return PaperFigure("statements", title, (), tuple(claims))
 
 
-def commensurability_claim() -> Claim:
-    """The condition of section 2 under which no relation holds."""
+def commensurability_claim(
+    lengths: Sequence[int] = RANKED_CHAINS, rank: Callable[[int], int] = frequency_rank
+) -> Claim:
+    """The condition of section 2 under which no relation holds. rank : of the frequencies."""
     promised, related, free = [], [], []
-    for N in RANKED_CHAINS:
-        independent = frequency_rank(N) == N - 1
+    for N in lengths:
+        independent = rank(N) == N - 1
         if _prime(N - 1) or N & (N - 1) == 0:
             promised.append(N)
             if not independent:
@@ -75,8 +76,7 @@ def commensurability_claim() -> Claim:
             free.append(N)
     text = "the linear frequencies satisfy no commensurability relation if N-1 is prime, "
     text += "or N a power of two"
-    last = RANKED_CHAINS[-1]
-    ours = f"exact ranks for N to {last}: of the {len(promised)} chains promised "
+    ours = f"exact ranks for N to {lengths[-1]}: of the {len(promised)} chains promised "
     ours += f"{len(related)} have relations, N = {runs(tuple(related))}"
     ours += f"; not promised and without relations: N = {runs(tuple(free))}"
     powers = not any(N & (N - 1) == 0 for N in related)
@@ -148,10 +148,10 @@ def _degree(value: Any) -> int:
     return degree
 
 
-def united_groups_claim() -> Claim:
-    """D_k of beta is two groups of alpha, for low packets."""
+def united_groups_claim(widths: Sequence[int] = LOW_WIDTHS) -> Claim:
+    """D_k of beta is two groups of alpha, for low packets of these widths."""
     wrong = []
-    for s in LOW_WIDTHS:
+    for s in widths:
         seeds = range(1, s + 1)
         alpha = excitation_sequence(LOW_CHAIN, seeds, 2 * LOW_ORDER)
         beta = excitation_sequence(LOW_CHAIN, seeds, LOW_ORDER, model="beta")
@@ -160,22 +160,27 @@ def united_groups_claim() -> Claim:
         ]
         if beta[1:] != united:
             wrong.append(s)
-    ours = f"for s = {LOW_WIDTHS[0]} .. {LOW_WIDTHS[-1]}, k to {LOW_ORDER}"
+    ours = f"for s = {widths[0]} .. {widths[-1]}, k to {LOW_ORDER}"
     if wrong:
         ours += f", but for s = {runs(tuple(wrong))}"
     if wrong == [1]:
         ours += ": the breather of beta skips the even modes"
     text = "example iii: D_k of beta is the union of D_(2k-1) and D_2k of alpha"
-    return Claim("5", text, "", ours, judged(not wrong, len(wrong) < len(LOW_WIDTHS)))
+    return Claim("5", text, "", ours, judged(not wrong, len(wrong) < len(widths)))
 
 
-def condition_claim() -> Claim:
-    """The condition at the end of section 5, for all small seed sets of a short chain."""
+def condition_claim(
+    reachable: Callable[[int, Modes, int], list[Modes]] = reachable_modes,
+) -> Claim:
+    """The condition at the end of section 5, for all small seed sets of a short chain.
+
+    reachable : the sets M_k of alpha.
+    """
     N, order = CONDITION_CHAIN, CONDITION_ORDER
     counts = {(met, same): 0 for met in (True, False) for same in (True, False)}
     first: Modes = ()
     for seeds in _seed_sets(N):
-        reached = reachable_modes(N, seeds, 2 * order)
+        reached = reachable(N, seeds, 2 * order)
         met = not any(
             set(reached[2 * k - 1]) & set(reached[2 * k]) for k in range(1, order + 1)
         )
@@ -205,9 +210,9 @@ def _seed_sets(N: int) -> Iterator[Modes]:
         yield from itertools.combinations(range(1, N), s)
 
 
-def thirds_claim() -> Claim:
+def thirds_claim(thirds: int = 3) -> Claim:
     """'One fourth, half and three thirds of the spectrum'."""
-    place = THIRDS / 3
+    place = thirds / 3
     is_a_mode = place < 1
     text = "packets around one fourth, half and three thirds of the spectrum"
     ours = f"three thirds is kappa = {place:g}, which no mode has: "
@@ -215,12 +220,12 @@ def thirds_claim() -> Claim:
     return Claim("6.3", text, "three thirds", ours, judged(is_a_mode))
 
 
-def slopes_claim() -> Claim:
+def slopes_claim(law: Callable[[Chain, int, float], ProfileLine] = profile_law) -> Claim:
     """The slope of tori goes with log [alpha^(-1/2) eps^(-1/4)]^-4, not with the number itself."""
     worst = 0.0
     rates = []
     for width in SLOPE_WIDTHS:
-        x, slopes = _slopes(width)
+        x, slopes = _slopes(width, law)
         rate = -4 / _value(width)
         off = slopes - slopes[0] - rate * np.log10(x / x[0])
         worst = max(worst, float(np.abs(off / slopes).max()))
@@ -232,14 +237,14 @@ def slopes_claim() -> Claim:
     return Claim("6.1.1", text, "", ours, judged(worst <= SLOPE_TOLERANCE))
 
 
-def _slopes(width: str) -> tuple[Any, Any]:
+def _slopes(width: str, law: Callable[[Chain, int, float], ProfileLine]) -> tuple[Any, Any]:
     """alpha^(-1/2) eps^(-1/4) and the slopes of the law."""
     x, slopes = [], []
     s = round(SLOPE_CHAIN * _value(width))
     for alpha, epsilon in SLOPE_PAIRS:
         chain = Chain(SLOPE_CHAIN, alpha=alpha)
         x.append(float(chain.alpha) ** -0.5 * epsilon**-0.25)
-        slopes.append(profile_law(chain, s, epsilon).slope)
+        slopes.append(law(chain, s, epsilon).slope)
     return np.array(x), np.array(slopes)
 
 

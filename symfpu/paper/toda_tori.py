@@ -127,7 +127,7 @@ def _refined(row: PrintedTorus, chain: Chain, tolerance: float) -> RefinedTorus:
 def gaps_over(torus: RefinedTorus) -> Floats:
     """Toda gaps (LOOKS, N-1) of states along an orbit that fills the torus."""
     times = LOOK_STEP * np.arange(LOOKS)
-    Q, P = torus.positions(times), torus.momenta(times)
+    Q, P = torus.Q(times), torus.P(times)
     return np.asarray(toda_gaps(torus.chain, Q, P), dtype=float)
 
 

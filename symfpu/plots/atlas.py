@@ -11,9 +11,11 @@ import numpy as np
 from symfpu.borders.atlas import Atlas, AtlasBorder
 from symfpu.borders.laws import LEAST_LENGTHS, power_law
 from symfpu.errors import InputError
-from symfpu.plots.style import Axes, axes_for, legend, look, require
+from symfpu.plots.legends import legend
+from symfpu.plots.style import Axes, axes_for, look, require
 
 AN_ATLAS, ADVICE = "an Atlas", "pass what atlas gave"
+UNNAMED = "not sure"  # of borders whose coefficient is another on both sides
 MOST_HARMONICS = 8  # with a name of their own in the legend of a map
 Lines = dict[tuple[str, str, str], list[AtlasBorder]]
 
@@ -40,13 +42,13 @@ def atlas_borders(
     >>> from matplotlib.figure import Figure
     >>> from symfpu import Chain, atlas
     >>> with ThreadPoolExecutor(1) as pool:
-    ...     found = atlas([Chain(4, beta=1)], ["low:1"], 6, borders=["ratio"], executor=pool)
+    ...     found = atlas([Chain(4, beta=1)], ["low:1"], 3, borders=["ratio"], executor=pool)
     >>> atlas_borders(found, Figure().add_subplot()).get_xlabel()
     '$N$'
     """
     found = require(result, Atlas, AN_ATLAS, ADVICE)
     lines = _lines(found, models, packets, borders)
-    with axes_for(ax) as axes:
+    with axes_for(ax, _in_common(lines)) as axes:
         for i, (names, members) in enumerate(lines.items()):
             _draw_line(axes, i, _label(names, lines), members, per_particle)
         axes.set_xscale("log", base=2)
@@ -87,6 +89,12 @@ def _label(names: tuple[str, str, str], lines: Lines) -> str:
         name for name, all_of in zip(names, columns, strict=True) if len(set(all_of)) > 1
     ]
     return ", ".join(telling) or names[1]
+
+
+def _in_common(lines: Lines) -> str:
+    """The model, packet and border of all lines."""
+    columns = [set(column) for column in zip(*lines, strict=True)]
+    return ", ".join(column.pop() for column in columns if len(column) == 1)
 
 
 def _draw_line(
@@ -148,7 +156,7 @@ def atlas_map(
     >>> from matplotlib.figure import Figure
     >>> from symfpu import Chain, atlas
     >>> with ThreadPoolExecutor(1) as pool:
-    ...     found = atlas([Chain(4, beta=1)], ["1", "2"], 6, borders=["poles"], executor=pool)
+    ...     found = atlas([Chain(4, beta=1)], ["1"], 3, borders=["poles"], executor=pool)
     >>> atlas_map(found, Figure().add_subplot()).get_xlabel()
     'seed'
     """
@@ -159,9 +167,11 @@ def atlas_map(
         harmonic = member.details.get("harmonic") or ()
         by_harmonic[",".join(map(str, harmonic))].append(member)
     ordered = sorted(by_harmonic, key=lambda name: -len(by_harmonic[name]))
-    with axes_for(ax) as axes:
+    of = f"N={members[0].N}, {members[0].model}, border: {border}"
+    with axes_for(ax, of) as axes:
         for i, name in enumerate(ordered[:MOST_HARMONICS]):
-            _draw_points(axes, i, f"$\\nu$ = ({name})", by_harmonic[name])
+            label = f"$\\nu$ = ({name})" if name else UNNAMED
+            _draw_points(axes, i, label, by_harmonic[name])
         rest = [m for name in ordered[MOST_HARMONICS:] for m in by_harmonic[name]]
         if rest:
             _draw_points(axes, MOST_HARMONICS, "others", rest)

@@ -9,8 +9,9 @@ import numpy as np
 
 from symfpu.breathers.floquet import ELLIPTIC, TRIVIAL
 from symfpu.errors import InputError
-from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
+from symfpu.families.members import Event, Member
+from symfpu.plots.legends import legend
 from symfpu.plots.spectra import spectrum_of_torus
 from symfpu.plots.style import (
     MARK,
@@ -18,9 +19,9 @@ from symfpu.plots.style import (
     Axes,
     Floats,
     axes_for,
-    legend,
     look,
     require,
+    subject,
     whole_numbers,
 )
 
@@ -57,7 +58,7 @@ def family_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     pairs = zip(found.chain.mode_numbers, found.chain.frequencies(), strict=True)
     linear = dict(pairs)
     smallest = np.inf
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(found)) as axes:
         for i, q in enumerate(found.seeds):
             rates = np.array([float(m.torus.frequencies[i]) for m in found.members])
             shifts = (rates - linear[q]) / linear[q]
@@ -79,21 +80,22 @@ def family_frequencies(result: Any, ax: Axes | None = None) -> Axes:
 
 def _scale_both_sides(axes: Axes, linear_below: float) -> None:
     """Powers of ten on both sides of zero, with few ticks."""
-    left, right = axes.get_xlim()
     axes.set_xscale("symlog", linthresh=linear_below)
-    above = _powers(linear_below, right)
-    below = _powers(linear_below, -left)
+    axes.autoscale_view(scaley=False)
+    left, right = axes.get_xlim()
+    apart = np.log10(max(right, -left) / linear_below) / MOST_POWERS
+    above = _powers(linear_below, right, apart)
+    below = _powers(linear_below, -left, apart)
     axes.set_xticks([*(-below[::-1]), 0.0, *above])
+    axes.set_xlim(left, right)
 
 
-def _powers(linear_below: float, largest: float) -> Floats:
-    """Some powers of ten above the linear part of a scale, ascending."""
+def _powers(linear_below: float, largest: float, apart: float) -> Floats:
+    """Powers of ten above the linear part of a scale, ascending, so many decades apart."""
     lowest = np.ceil(np.log10(linear_below)) + 1
     highest = np.floor(np.log10(max(largest, linear_below)))
-    if highest < lowest:
-        return np.array([])
-    exponents = np.linspace(lowest, highest, MOST_POWERS).round()
-    return np.asarray(10.0 ** np.unique(exponents))
+    exponents = np.arange(highest, lowest - 1, -max(1, np.ceil(apart)))
+    return np.asarray(10.0 ** exponents[::-1])
 
 
 def family_amplitudes(result: Any, ax: Axes | None = None) -> Axes:
@@ -110,7 +112,7 @@ def family_amplitudes(result: Any, ax: Axes | None = None) -> Axes:
     """
     found = require(result, Family, A_FAMILY, ADVICE)
     energies = _energies(found)
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(found)) as axes:
         for i, q in enumerate(found.seeds):
             sizes = np.array([abs(m.amplitudes[q]) for m in found.members])
             axes.plot(energies, sizes, label=f"$q = {q}$", **_look(i, found))
@@ -148,7 +150,7 @@ def family_multipliers(result: Any, ax: Axes | None = None) -> Axes:
     if not known:
         advice = "call family(..., multipliers=True), of one seed"
         raise InputError("result", "without", "a family with multipliers", advice)
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(found)) as axes:
         for m in known:
             angles = np.abs(np.angle(_firsts(m, on_circle=True)))
             same = np.full(len(angles), m.energy)
@@ -206,7 +208,7 @@ def family_spectra(result: Any, ax: Axes | None = None) -> Axes:
     found = require(result, Family, A_FAMILY, ADVICE)
     last = len(found.members) - 1
     places = np.linspace(0, last, SPECTRA_SHOWN).round().astype(int)
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(found)) as axes:
         for i, k in enumerate(np.unique(places)):
             m = found.members[k]
             drawn = spectrum_of_torus(m.torus)
@@ -220,6 +222,13 @@ def family_spectra(result: Any, ax: Axes | None = None) -> Axes:
         axes.set_ylabel(r"$\overline{E}_q \,/\, \sum \overline{E}_q$")
         legend(axes)
     return axes
+
+
+def _subject(found: Family) -> str:
+    """Chain, seeds, and the energies from one end to the other."""
+    energies = _energies(found)
+    span = f"H={energies.min():.6g} .. {energies.max():.6g}"
+    return f"{subject(found.chain, found.seeds)}, {span}"
 
 
 def _energies(found: Family) -> Floats:

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.plots.style import MARK, QUIET, Axes, axes_for, legend, look, require
+from symfpu.plots.legends import legend
+from symfpu.plots.style import MARK, QUIET, Axes, axes_for, look, require, subject
 from symfpu.spectral.mapping import FrequencyMap
 
 ADVICE = "make one with frequency_map"
@@ -34,7 +35,7 @@ def frequency_map(result: FrequencyMap, ax: Axes | None = None) -> Axes:
     """
     found = require(result, FrequencyMap, WORDS, ADVICE)
     shifts = found.shifts()
-    with axes_for(ax) as axes:
+    with axes_for(ax, subject(found.chain, found.packet)) as axes:
         axes.set_xscale("log")
         axes.set_yscale("symlog", linthresh=_least(shifts))
         axes.axhline(0.0, color=QUIET, lw=0.8, zorder=0)
@@ -86,7 +87,7 @@ def frequency_drift(result: FrequencyMap, ax: Axes | None = None) -> Axes:
     'log'
     """
     found = require(result, FrequencyMap, WORDS, ADVICE)
-    with axes_for(ax) as axes:
+    with axes_for(ax, subject(found.chain, found.packet)) as axes:
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.plot(found.energies, found.drifts, "o-", color=MARK, markersize=3)

@@ -11,7 +11,8 @@ import numpy as np
 from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.dimension import DECADES
-from symfpu.plots.style import QUIET, Axes, axes_for, legend, look, require
+from symfpu.plots.legends import legend
+from symfpu.plots.style import QUIET, Axes, axes_for, look, of_solution, require, subject
 
 RINGS, RINGS_APART = 40, 5  # of an integrated index; those of neighbours between them
 LEAST_HEIGHT_DECADES = 0.5  # of the picture, for indices that stay where they are
@@ -38,7 +39,7 @@ def alignment(result: Any, ax: Axes | None = None) -> Axes:
     found = require(result, AlignmentIndices, WORDS, ADVICE)
     x = np.log10(found.times)
     late = x >= x[-1] - DECADES
-    with axes_for(ax) as axes:
+    with axes_for(ax, subject(found.chain)) as axes:
         for i, slope in enumerate(found.slopes()):
             frames = np.array([one.log10_gali[:, i] for one in found.frames])
             y = frames.mean(axis=0)
@@ -54,8 +55,7 @@ def alignment(result: Any, ax: Axes | None = None) -> Axes:
         axes.set_xlabel(r"$\log_{10}\, t$")
         axes.set_ylabel(r"$\log_{10}\, G_k$")
         axes.set_title(found.dimension().verdict)
-        legend = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5)}
-        axes.legend(title="slopes, last decades", title_fontsize="small", **legend)
+        legend(axes, title="slopes, last decades", most=0)
     return axes
 
 
@@ -81,7 +81,7 @@ def foretold(
         require(observed, AlignmentIndices, WORDS, ADVICE)
     x = np.log10(found.times)
     settled = found.settling()
-    with axes_for(ax) as axes:
+    with axes_for(ax, of_solution(found.torus)) as axes:
         for i, (k, slope) in enumerate(found.asymptotic_slopes.items()):
             style = look(i) | {"marker": None}
             label = rf"$G_{{{k}}} \to t^{{{slope}}}$"
@@ -138,7 +138,7 @@ def lyapunov(result: Any, ax: Axes | None = None) -> Axes:
     found = require(result, AlignmentIndices, WORDS, ADVICE)
     positive = found.lyapunov > 0
     times, estimates = found.times[positive], found.lyapunov[positive]
-    with axes_for(ax) as axes:
+    with axes_for(ax, subject(found.chain)) as axes:
         axes.loglog(times, estimates, color="C0", label="estimate")
         late = times > math.e
         if late.any():
@@ -147,5 +147,5 @@ def lyapunov(result: Any, ax: Axes | None = None) -> Axes:
             axes.loglog(times[late], through, "k--", lw=0.9, label=r"$\propto \log(t)/t$")
         axes.set_xlabel("$t$")
         axes.set_ylabel(r"$\log |v(t)| \,/\, t$")
-        axes.legend()
+        legend(axes)
     return axes

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from symfpu.errors import InputError
-from symfpu.plots.style import MARK, QUIET, Axes, axes_for
+from symfpu.plots.legends import legend
+from symfpu.plots.style import MARK, QUIET, Axes, axes_for, subject
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
 
 
@@ -27,7 +28,7 @@ def lines(result: FrequencyAnalysis, ax: Axes | None = None) -> Axes:
         advice = "make one with frequency_analysis"
         raise InputError("result", result, "a FrequencyAnalysis", advice)
     moving = [line for line in result.lines if line.frequency > 0]
-    with axes_for(ax) as axes:
+    with axes_for(ax, subject(result.chain)) as axes:
         axes.set_yscale("log")
         _draw(axes, [x for x in moving if not _is_independent(x)], QUIET, None)
         marked = [x for x in moving if _is_independent(x)]
@@ -38,7 +39,7 @@ def lines(result: FrequencyAnalysis, ax: Axes | None = None) -> Axes:
             axes.axvline(Omega, 0.97, 1.0, color="0.2", linewidth=0.8)
         axes.set_xlabel(r"frequency $f$")
         axes.set_ylabel(r"amplitude in $Q_q$")
-        axes.legend()
+        legend(axes)
     return axes
 
 

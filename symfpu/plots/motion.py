@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import DOUBLES
+from symfpu.plots.legends import legend
 from symfpu.plots.style import (
     EPS,
     QUIET,
@@ -20,10 +22,11 @@ from symfpu.plots.style import (
     chosen_modes,
     even,
     look,
+    of_solution,
     rounding_below,
+    subject,
 )
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 PERIODS = 6  # of the slowest seed, that are shown where nothing is said
 SAMPLES = 1200  # times in them
@@ -79,7 +82,7 @@ def time_series(
     values = motion.energies if energies else np.real(motion.Q)
     columns = [motion.chain.mode_numbers.index(q) for q in listed]
     late = slice(None) if even(motion.times) else motion.times > 0
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(result)) as axes:
         for i, (q, column) in enumerate(zip(listed, columns, strict=True)):
             style = look(i) | {"marker": None}
             shown = values[late, column]
@@ -91,7 +94,7 @@ def time_series(
         axes.set_ylabel("$E_q$" if energies else f"${letter}_q$")
         if energies:
             _scale_energies(axes, values[late][:, columns], motion.rounding)
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        legend(axes, most=0)
     return axes
 
 
@@ -129,7 +132,7 @@ def space_time(
     x = displacements(motion)
     j = _sites(motion.chain)
     largest = float(np.abs(x).max()) or 1.0
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(result)) as axes:
         colours = {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
         mesh = axes.pcolormesh(
             j, motion.times, x, shading="nearest", rasterized=True, **colours
@@ -170,7 +173,7 @@ def animation(
     _require_even(motion.times)
     x = displacements(motion)
     largest = float(np.abs(x).max()) or 1.0
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(result)) as axes:
         (line,) = axes.plot(_sites(motion.chain), x[0], marker="o", ms=4)
         axes.axhline(0, color=QUIET, lw=0.6, zorder=0)
         axes.set_ylim(-1.1 * largest, 1.1 * largest)
@@ -185,6 +188,13 @@ def animation(
 
         frame(0)
         return FuncAnimation(axes.figure, frame, frames=len(x), interval=interval)
+
+
+def _subject(result: Any) -> str:
+    """An orbit has no seeds."""
+    if isinstance(result, Orbit):
+        return subject(result.chain, (), float(result.energies[0]))
+    return of_solution(result)
 
 
 def displacements(motion: Motion) -> Floats:
@@ -202,21 +212,17 @@ def _motion(
 ) -> Motion:
     if isinstance(result, Orbit):
         return _motion_of_orbit(result, times)
-    if not isinstance(result, (QuasiPeriodic, RingTorus)):
+    if not isinstance(result, QuasiPeriodic):
         given = type(result).__name__
         raise InputError("result", given, "a torus, a breather or an orbit", ADVICE)
     if times is None:
         slowest = min(abs(float(w)) for w in result.frequencies)
         chosen = np.linspace(0, periods * 2 * np.pi / slowest, samples)
     else:
-        chosen = np.asarray(times, dtype=float)
+        chosen = DOUBLES.array(times)
     if chosen.ndim != 1 or len(chosen) < 2:
         raise InputError("times", np.shape(chosen), "shape (T,), T > 1", "pass times")
-    Q: Any
-    if isinstance(result, RingTorus):
-        Q = result.mode_coordinates(chosen)
-    else:
-        Q = np.asarray(result.positions(chosen), dtype=float)
+    Q: Any = result.Q(chosen).astype(result.chain.kind_of_ends.mode_type)
     energies = np.asarray(result.harmonic_energies(chosen), dtype=float)
     return _with_rounding(result.chain, chosen, Q, energies)
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from symfpu.normal.modes import ELLIPTIC, HYPERBOLIC, NormalModes
-from symfpu.plots.style import QUIET, Axes, axes_for, require, whole_numbers
+from symfpu.plots.legends import legend
+from symfpu.plots.style import QUIET, Axes, axes_for, of_solution, require, whole_numbers
 
 LOOKS = {
     ELLIPTIC: {"marker": "o", "color": "C0", "ms": 5},
@@ -33,7 +34,7 @@ def normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     found = require(result, NormalModes, "normal modes", "pass what normal_modes gave")
     chain = found.torus.chain
     linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
-    with axes_for(ax) as axes:
+    with axes_for(ax, of_solution(found.torus)) as axes:
         for kind, style in LOOKS.items():
             modes = [mode for mode in found.modes if mode.kind == kind]
             if modes:
@@ -50,5 +51,5 @@ def normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
         axes.set_xlabel(r"$q$")
         axes.set_ylabel(r"$\mathrm{Re}\,\sigma_q - \Omega_q$")
         axes.set_title(found.verdict)
-        axes.legend()
+        legend(axes)
     return axes

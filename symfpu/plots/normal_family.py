@@ -11,15 +11,15 @@ from symfpu.families.family import Family
 from symfpu.families.normal_events import STABILITY, NormalEvent
 from symfpu.families.normal_family import NormalFamily
 from symfpu.numbers.counted import counted
-from symfpu.plots.style import QUIET, Axes, axes_for, legend, look, require
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
+from symfpu.plots.legends import legend
+from symfpu.plots.style import QUIET, Axes, axes_for, look, require, subject
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 
 
 class _Row(NamedTuple):
     """One torus, and its normal frequencies by mode."""
 
-    torus: QuasiPeriodic | RingTorus
+    torus: QuasiPeriodic
     sigma: Mapping[int, complex]
 
     @property
@@ -51,7 +51,7 @@ def family_normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     seed, x = _axis(rows)
     unstable = sum(not row.stable for row in rows)
     verdict = f"{unstable} of them unstable" if unstable else "stable"
-    with axes_for(ax) as axes:
+    with axes_for(ax, subject(chain, rows[0].torus.seeds)) as axes:
         for i, q in enumerate(rows[0].sigma):
             sigma = np.array([complex(row.sigma.get(q, np.nan)) for row in rows])
             _line(axes, x, sigma - linear[q], look(i), f"$q={q}$")
@@ -77,7 +77,7 @@ def _rows(result: Any) -> tuple[list[_Row], tuple[NormalEvent, ...]]:
 
 def _axis(rows: list[_Row]) -> tuple[int, Any]:
     """The seed whose amplitude changes most, and that amplitude along the way."""
-    known = [amplitudes_by_seed(row.torus) for row in rows]
+    known = [amplitudes_of(row.torus) for row in rows]
     seed = max(known[0], key=lambda q: abs(float(known[-1][q]) - float(known[0][q])))
     return seed, np.array([float(row[seed]) for row in known])
 

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from symfpu.errors import InputError
-from symfpu.numbers.typed import integer
-from symfpu.plots.style import MARK, Axes, axes_for, whole_numbers
+from symfpu.numbers.typed import integer, length_of
+from symfpu.plots.legends import legend
+from symfpu.plots.style import MARK, Axes, axes_for, subject, whole_numbers
 from symfpu.proofs.certificates import PropagationProof
 
 ROOM = 170.0  # points of the height of the axes that markers share
@@ -34,11 +35,13 @@ def propagation(result: Any, ax: Axes | None = None, *, N: int | None = None) ->
     """
     if isinstance(result, PropagationProof):
         rule, actual, bonds = _modes(result.rule), _modes(result.actual), result.N
+        of = f"N={bonds}, {result.model}"
     else:
         rule, actual = None, _modes(result)
         largest = max((q for modes in actual for q in modes), default=0)
-        bonds = largest + 1 if N is None else integer(N, "N", largest + 1)
-    with axes_for(ax) as axes:
+        bonds = largest + 1 if N is None else length_of(N, largest + 1)
+        of = "" if N is None else f"N={bonds}"
+    with axes_for(ax, subject(of, actual[0])) as axes:
         size = float(np.clip(ROOM / bonds, 2.2, 7.0))
         dots = {"marker": "o", "ls": "none", "ms": size}
         if rule is None:
@@ -51,6 +54,7 @@ def propagation(result: Any, ax: Axes | None = None, *, N: int | None = None) ->
         whole_numbers(axes.yaxis)
         axes.set_xlabel("order $k$")
         axes.set_ylabel("$q$")
+        legend(axes, most=0)
     return axes
 
 
@@ -70,7 +74,6 @@ def _draw_proof(axes: Axes, rule: Sets, actual: Sets, dots: dict[str, Any]) -> N
     if any(others):
         diamonds = dots | {"marker": "D"}
         axes.plot(*_points(others), color=MARK, label="against the rule", **diamonds)
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
 def _points(sets: Sets) -> tuple[list[int], list[int]]:

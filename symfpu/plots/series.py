@@ -9,6 +9,7 @@ import numpy as np
 
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer
+from symfpu.plots.legends import legend
 from symfpu.plots.style import (
     EPS,
     MARK,
@@ -16,16 +17,15 @@ from symfpu.plots.style import (
     Axes,
     Floats,
     axes_for,
-    legend,
     look,
+    of_solution,
     require,
     rounding_below,
+    subject,
     whole_numbers,
 )
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.series.series import LindstedtSeries
-from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment
@@ -59,7 +59,7 @@ def coefficients(result: Any, ax: Axes | None = None, *, mode: int | None = None
         allowed = "a mode that the series excites up to its order"
         raise InputError("mode", mode, allowed, "choose another, or a higher order")
     top = np.nanmax(table)
-    with axes_for(ax) as axes:
+    with axes_for(ax, of_solution(torus)) as axes:
         colours = {"cmap": "viridis", "vmin": max(np.nanmin(table), top - LEAST_DECADES)}
         table[table < top - LEAST_DECADES] = np.nan
         orders, lengths = np.arange(table.shape[1]), np.arange(table.shape[0])
@@ -84,7 +84,7 @@ def coefficients(result: Any, ax: Axes | None = None, *, mode: int | None = None
         index = "q" if column is None else str(mode)
         name = rf"$\log_{{10}}\, {what}\, \Omega_{{{index}}} |c_{{{index}}}^{{(k)}}[\nu]|$"
         axes.figure.colorbar(mesh, ax=axes, label=name)
-        axes.legend(loc="upper left")
+        legend(axes, first="upper left")
     return axes
 
 
@@ -122,9 +122,8 @@ def small_divisors(result: Any, ax: Axes | None = None) -> Axes:
     """The smallest divisors |lambda_q - (nu.omega)^2|, with mode q, harmonic nu and order.
 
     result : a series or the torus solved from it, or a torus of Newton's method, whose divisors
-        (nu.omega)^2 - Omega_q^2 stand beside the coefficients under them; waves of a ring too, but
-        for the torus that `travelling_torus` gave, which does not keep its series. ax : axes of
-        matplotlib; default new ones. Dimensionless; those of Eq. Lm, over Omega_q^2.
+        (nu.omega)^2 - Omega_q^2 stand beside the coefficients under them. ax : axes of matplotlib;
+        default new ones. Dimensionless; those of Eq. Lm, over Omega_q^2.
 
     Returns the axes. Raises InputError for what has no divisors: series in universal form and
     residues.
@@ -140,7 +139,7 @@ def small_divisors(result: Any, ax: Axes | None = None) -> Axes:
         allowed = "a series with chosen frequencies and divisors"
         advice = "give frequencies= to lindstedt, and an order above 0"
         raise InputError("result", "without divisors", allowed, advice)
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(result)) as axes:
         places = np.arange(len(found))
         axes.plot([d.size for d in found], places, "o", color="C0")
         for place, d in zip(places, found, strict=True):
@@ -161,6 +160,13 @@ def small_divisors(result: Any, ax: Axes | None = None) -> Axes:
     return axes
 
 
+def _subject(result: Any) -> str:
+    """A series has no energy."""
+    if isinstance(result, LindstedtSeries):
+        return subject(result.chain, result.seeds)
+    return of_solution(result)
+
+
 def _leave_room(axes: Axes, sizes: list[float]) -> None:
     """Of a logarithmic axis, more on the right side than on the left."""
     decades = np.log10(sizes)
@@ -177,7 +183,7 @@ def _of_coefficient(coefficient: float, rounding: float) -> str:
 
 
 def _divisors(result: Any) -> list[_Divisor]:
-    if isinstance(result, (RefinedTorus, RefinedRingTorus)):
+    if isinstance(result, RefinedTorus):
         near = result.near_resonances
         rounding = EPS * max(abs(float(A)) for A in result.amplitudes.values())
         notes = [_of_coefficient(float(r.coefficient), rounding) for r in near]
@@ -185,12 +191,7 @@ def _divisors(result: Any) -> list[_Divisor]:
         return [_Divisor(abs(r.divisor), r.mode, r.harmonic, note) for r, note in pairs]
     series = result.series if isinstance(result, QTorus) else result
     allowed = "a series, or a torus of a series or of Newton's method"
-    checked: LindstedtSeries | TravellingSeries
-    if isinstance(series, TravellingSeries):
-        checked = series
-    else:
-        advice = "pass what lindstedt or travelling_waves gave"
-        checked = require(series, LindstedtSeries, allowed, advice)
+    checked = require(series, LindstedtSeries, allowed, "pass what lindstedt gave")
     smallest = checked.smallest_divisors
     return [_Divisor(d.size, d.mode, d.harmonic, f"$k$ = {d.order}") for d in smallest]
 
@@ -222,11 +223,12 @@ def amplitudes(result: Any, ax: Axes | None = None) -> Axes:
     'log'
     """
     known, differences, failed, seeds = _history(result)
+    of = subject(result.chain or "", seeds)
     if not differences:
         allowed = "two neighbouring orders with a root"
         raise InputError("result", "fewer", allowed, "compute a longer series")
     last = known[max(known)]
-    with axes_for(ax) as axes:
+    with axes_for(ax, of) as axes:
         for i, q in enumerate(seeds):
             changes = np.array([differences[K][i] for K in differences])
             orders = np.array(list(differences))
@@ -290,7 +292,7 @@ def residuals(result: Any, ax: Axes | None = None) -> Axes:
     found = require(result, Assessment, "an Assessment", "pass what assess gave")
     orders = np.arange(len(found.residuals))
     best = found.best_order
-    with axes_for(ax) as axes:
+    with axes_for(ax, subject(found.chain or "", tuple(found.sums))) as axes:
         curves = {"equations of motion": found.residuals, "energy": found.energy_errors}
         for i, (name, values) in enumerate(curves.items()):
             seen = np.isfinite(values) & (values > 0)

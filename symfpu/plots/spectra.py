@@ -17,6 +17,7 @@ from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.localization.floors import spectrum_floor
 from symfpu.numbers.typed import integer
+from symfpu.plots.legends import legend
 from symfpu.plots.style import (
     COLOURS,
     EPS,
@@ -25,14 +26,12 @@ from symfpu.plots.style import (
     Axes,
     Floats,
     axes_for,
-    legend,
     look,
+    subject,
     whole_numbers,
 )
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
 
 MOST_STRIPES = 40  # of groups that are shaded where nothing is said
@@ -46,8 +45,6 @@ KINDS: tuple[tuple[type, str], ...] = (
     (QTorus, "series"),
     (RefinedTorus, "Newton's method"),
     (PeriodicOrbit, "breather"),
-    (RefinedRingTorus, "waves, by Newton's method"),
-    (RingTorus, "waves of a ring"),
     (Orbit, "orbit"),
 )
 
@@ -95,7 +92,7 @@ def spectrum(
     names = _names(listed, labels)
     _require_one_length(shown)
     last = None if groups is None else integer(groups, "groups", 0)
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(listed, shown)) as axes:
         for i, (found, name) in enumerate(zip(shown, names, strict=True)):
             _draw(axes, found, name, i)
         axes.set_yscale("log")
@@ -109,6 +106,14 @@ def spectrum(
         if len(shown) > 1 or labels is not None:
             legend(axes)
     return axes
+
+
+def _subject(results: Sequence[Any], shown: Sequence[Spectrum]) -> str:
+    """What all results have in common; of one result its energy too."""
+    first = shown[0]
+    chain = first.chain if len({found.chain for found in shown}) == 1 else ""
+    seeds = first.seeds if len({found.seeds for found in shown}) == 1 else ()
+    return subject(chain, seeds, _energy(results[0]) if len(shown) == 1 else None)
 
 
 def _draw(axes: Axes, found: Spectrum, name: str, i: int) -> None:
@@ -137,7 +142,7 @@ def _fit_height(axes: Axes, shown: Sequence[Spectrum]) -> None:
 
 
 def _spectrum_of(result: object) -> Spectrum:
-    if isinstance(result, (QuasiPeriodic, RingTorus)):
+    if isinstance(result, QuasiPeriodic):
         return spectrum_of_torus(result)
     if isinstance(result, Orbit):
         return _spectrum_of_orbit(result)
@@ -146,11 +151,11 @@ def _spectrum_of(result: object) -> Spectrum:
     raise InputError("results", type(result).__name__, allowed, advice)
 
 
-def spectrum_of_torus(torus: QuasiPeriodic | RingTorus) -> Spectrum:
+def spectrum_of_torus(torus: QuasiPeriodic) -> Spectrum:
     """With what of it is rounding: of waves of a ring EPS^2 times the sum of all energies."""
     energies = np.asarray(torus.average_spectrum(), dtype=float)
     chain = torus.chain
-    if isinstance(torus, RingTorus):
+    if chain.periodic:
         floor = np.full(len(energies), EPS**2 * energies.sum())
     else:
         floor = spectrum_floor(torus)

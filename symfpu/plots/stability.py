@@ -14,7 +14,8 @@ from symfpu.breathers.floquet import (
     TRIVIAL,
     Floquet,
 )
-from symfpu.plots.style import QUIET, Axes, axes_for, require
+from symfpu.plots.legends import leave_room_beside, legend
+from symfpu.plots.style import QUIET, Axes, axes_for, of_solution, require
 
 LARGEST_SHOWN = 3.0  # modulus; larger multipliers stand at the edge with their number
 BEYOND = 1 + 1e-9  # times the edge, from which a multiplier is beyond it
@@ -44,7 +45,7 @@ def multipliers(result: Any, ax: Axes | None = None) -> Axes:
     found = require(result, Floquet, "Floquet multipliers", "pass what floquet gave")
     kinds = np.array(found.kinds)
     reach = min(LARGEST_SHOWN, found.largest)
-    with axes_for(ax) as axes:
+    with axes_for(ax, of_solution(found.orbit)) as axes:
         turn = np.linspace(0, 2 * np.pi, 361)
         axes.plot(np.cos(turn), np.sin(turn), color=QUIET, lw=0.8, zorder=0)
         for kind, style in LOOKS.items():
@@ -66,10 +67,8 @@ def multipliers(result: Any, ax: Axes | None = None) -> Axes:
             else f"unstable: $|\\lambda|$ up to {found.largest:.4g}"
         )
         axes.set_title(verdict)
-        if found.stable:
-            axes.legend(loc="center")
-        else:
-            axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        leave_room_beside(axes, "compressed")
+        legend(axes, first="center")
     return axes
 
 

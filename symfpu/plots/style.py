@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from functools import lru_cache
 from importlib.resources import as_file, files
 from pathlib import Path
+from textwrap import fill
 from typing import Any, TypeVar
 
 import numpy as np
@@ -27,9 +28,9 @@ Axes = Any
 Kind = TypeVar("Kind")
 
 SUFFIXES = (".png", ".pdf", ".svg")
-LONGEST_LEGEND = 15  # rows of a column
 COLOURS = 5  # of the style file; then they come round
 MARKERS = "osD^v<>*P"
+SUBJECT, SUBJECT_WIDTH = "subject", 84  # its id in a figure; characters of a line
 SHADES = ("0.95", "0.885")  # of neighbouring groups
 MARK = "#d55e00"  # the colour of what stands out
 NTH = re.compile("C[0-9]+")  # a colour of the style, by its place
@@ -68,17 +69,63 @@ def styled() -> Iterator[None]:
 
 
 @contextmanager
-def axes_for(ax: Axes | None, projection: str | None = None) -> Iterator[Axes]:
+def axes_for(
+    ax: Axes | None, of: str = "", *, projection: str | None = None
+) -> Iterator[Axes]:
     """The axes to draw in, in the project's style: those given, or new ones of pyplot.
 
+    of : what `subject` says of the result; it stands above axes that are alone in their figure.
     projection : "3d" where three dimensions are drawn. Raises InputError for what are no axes.
     """
     with styled():
         axes = _new_axes(projection) if ax is None else _given_axes(ax, projection)
+        if of and axes.figure.axes == [axes]:
+            _say_subject(axes.figure, of)
         before = set(_lines(axes))
         yield axes
         for line in set(_lines(axes)) - before:
             _keep_colours(line)
+
+
+def subject(
+    chain: Chain | str = "", seeds: Sequence[int] = (), energy: float | None = None
+) -> str:
+    """Of which chain, seeds and energy H a picture is, in a line or two.
+
+    chain : it, or what is known of it, in words.
+
+    >>> from symfpu import Chain
+    >>> subject(Chain(16, alpha="0.33"), (1, 2), 0.0234453)
+    'N=16, alpha=0.33, seeds 1, 2, H=0.0234453'
+    """
+    words = chain if isinstance(chain, str) else repr(chain)
+    parts = [words.removeprefix("Chain(").removesuffix(")")] if words else []
+    if seeds:
+        parts.append(f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}")
+    if energy is not None:
+        parts.append(f"H={energy:.6g}")
+    return fill(", ".join(parts), SUBJECT_WIDTH)
+
+
+def of_solution(found: Any) -> str:
+    """The subject of a torus or breather."""
+    return subject(found.chain, found.seeds, float(found.energy()))
+
+
+def _say_subject(figure: Any, words: str) -> None:
+    """Small words above the axes: those of a second result below, but none beside a title."""
+    said = figure.get_suptitle()
+    if said and not _is_subject(figure, said):
+        return
+    if words not in said.split("\n"):
+        style = {"fontsize": "small", "color": QUIET, "gid": SUBJECT}
+        figure.suptitle("\n".join(filter(None, (said, words))), **style)
+
+
+def _is_subject(figure: Any, said: str) -> bool:
+    return any(
+        text.get_text() == said and text.get_gid() == SUBJECT for text in figure.texts
+    )
 
 
 def _lines(axes: Axes) -> list[Any]:
@@ -129,22 +176,6 @@ def look(i: int) -> dict[str, Any]:
     line = ("-", "--", ":")[i // COLOURS % 3]
     marker = MARKERS[i % len(MARKERS)]
     return {"color": f"C{i % COLOURS}", "marker": marker, "ls": line}
-
-
-def legend(ax: Axes, *, title: str | None = None, most: int = 6) -> None:
-    """A legend where it covers least, beside the axes if it is long; none without labels.
-
-    A very long one has columns, so that it is no higher than the axes.
-    """
-    handles, _ = ax.get_legend_handles_labels()
-    if not handles:
-        return
-    if len(handles) > most:
-        columns = 1 + (len(handles) - 1) // LONGEST_LEGEND
-        beside = {"loc": "center left", "bbox_to_anchor": (1.0, 0.5), "ncols": columns}
-        ax.legend(title=title, fontsize="small", **beside)
-    else:
-        ax.legend(title=title)
 
 
 def rounding_below(ax: Axes, level: float, words: str = "rounding") -> None:

@@ -10,6 +10,9 @@ from numpy.typing import ArrayLike
 
 from symfpu.errors import InputError
 from symfpu.integrable.invariants import TodaInvariants
+from symfpu.numbers.arithmetic import DOUBLES
+from symfpu.numbers.typed import decimal
+from symfpu.plots.legends import legend
 from symfpu.plots.style import (
     EPS,
     MARKERS,
@@ -55,7 +58,7 @@ def toda_gaps(
         allowed = "(N-1,) without times, or (T, N-1) with T times"
         raise InputError("times", given, allowed, ADVICE)
     q = _numbers(modes, gaps.shape[-1])
-    with axes_for(ax) as axes:
+    with axes_for(ax, _subject(result)) as axes:
         if times is None:
             _draw_state(axes, gaps, q)
         else:
@@ -63,7 +66,15 @@ def toda_gaps(
         axes.set_ylabel("gap")
         if doubles:
             rounding_below(axes, ROUNDING)
+        legend(axes, most=0)
     return axes
+
+
+def _subject(result: Any) -> str:
+    """Of a state; an array does not say of which chain it is."""
+    if not isinstance(result, TodaInvariants):
+        return ""
+    return f"N={result.N}, Toda's chain of a={decimal(result.a)}"
 
 
 def _gaps(result: Any) -> tuple[Floats, bool]:
@@ -87,7 +98,7 @@ def _numbers(modes: Sequence[int] | None, count: int) -> Any:
 
 
 def _checked(times: ArrayLike, count: int) -> Floats:
-    t = np.asarray(times, dtype=float)
+    t = DOUBLES.array(times)
     if t.shape != (count,):
         raise InputError("times", t.shape, f"shape ({count},)", "one for each state")
     return t
@@ -122,7 +133,5 @@ def _draw_orbit(axes: Axes, gaps: Floats, q: Any, times: Floats) -> None:
     if uneven:
         axes.set_xscale("log")
     axes.set_xlabel("$t$")
-    if count <= FEW:
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-        return
-    axes.figure.colorbar(scale, ax=axes, label="$q$")
+    if count > FEW:
+        axes.figure.colorbar(scale, ax=axes, label="$q$")

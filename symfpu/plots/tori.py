@@ -11,11 +11,16 @@ import numpy as np
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer
-from symfpu.plots.style import Axes, Floats, axes_for, chosen_modes, legend, look
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
-
-Solution = QuasiPeriodic | RingTorus
+from symfpu.plots.legends import legend
+from symfpu.plots.style import (
+    Axes,
+    Floats,
+    axes_for,
+    chosen_modes,
+    look,
+    of_solution,
+)
+from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 POINTS = 2000  # of a section
 ORBITS = 48  # that rule a torus of two angles
@@ -62,7 +67,7 @@ def section(
     Q, P = _phase_space(torus, 2 * np.pi / omega * np.arange(number))
     columns = _columns(torus.chain, listed)
     real = _real_part(torus.chain)
-    with axes_for(ax) as axes:
+    with axes_for(ax, of_solution(torus)) as axes:
         for i, (q, column) in enumerate(zip(listed, columns, strict=True)):
             colour = look(i)["color"]
             size = 1.5 if len(torus.seeds) > 1 else 7
@@ -77,18 +82,16 @@ def section(
     return axes
 
 
-def _solution(result: Any) -> Solution:
-    if isinstance(result, (QuasiPeriodic, RingTorus)):
+def _solution(result: Any) -> QuasiPeriodic:
+    if isinstance(result, QuasiPeriodic):
         return result
     raise InputError("result", type(result).__name__, SOLUTION, ADVICE)
 
 
-def _phase_space(found: Solution, times: Any) -> tuple[Floats, Floats]:
+def _phase_space(found: QuasiPeriodic, times: Any) -> tuple[Floats, Floats]:
     """Q and P at times, (T, N-1) each, in doubles; of a ring their real parts."""
-    if isinstance(found, RingTorus):
-        return found.mode_coordinates(times).real, found.mode_momenta(times).real
     doubles = found.in_doubles()
-    return doubles.positions(times), doubles.momenta(times)
+    return doubles.Q(times).real, doubles.P(times).real
 
 
 def _columns(chain: Chain, modes: Sequence[int]) -> list[int]:
@@ -149,13 +152,14 @@ def torus(
     if len(listed) == 2:
         names.insert(1, f"${real}P_{{{listed[0]}}}$")
         parts.insert(1, P[..., columns[0]])
-    with axes_for(ax, "3d") as axes:
+    with axes_for(ax, of_solution(found), projection="3d") as axes:
         _draw(axes, parts, angles=len(found.seeds))
         axes.set_xlabel(names[0], labelpad=7)
         axes.set_ylabel(names[1], labelpad=7)
         axes.set_zlabel(names[2], labelpad=7)
         for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
             axis.set_major_locator(_few_ticks())
+        axes.ticklabel_format(style="sci", scilimits=(-2, 3))
         axes.set_box_aspect(None, zoom=0.85)
     return axes
 
@@ -166,7 +170,7 @@ def _few_ticks() -> Any:
     return MaxNLocator(3)
 
 
-def _modes(found: Solution, modes: Sequence[int] | None) -> list[int]:
+def _modes(found: QuasiPeriodic, modes: Sequence[int] | None) -> list[int]:
     """Two modes or three; InputError for other numbers, and for a chain of one mode."""
     numbers = found.chain.mode_numbers
     if len(set(map(abs, numbers))) < 2:  # q and -q of a ring have one real part
@@ -186,7 +190,7 @@ def _modes(found: Solution, modes: Sequence[int] | None) -> list[int]:
     return [first, numbers[int(np.argmax(energies))]]
 
 
-def _surface(found: Solution) -> tuple[Floats, Floats]:
+def _surface(found: QuasiPeriodic) -> tuple[Floats, Floats]:
     """Q and P on the torus, (orbits, points, N-1).
 
     Of two angles orbits of one turn of the first, from equally spaced phases of the second.
@@ -197,27 +201,19 @@ def _surface(found: Solution) -> tuple[Floats, Floats]:
     times = np.linspace(0, turn, AROUND + 1)
     if len(found.seeds) == 1:
         return _one_orbit(found, times)
-    plain = found if isinstance(found, RingTorus) else found.in_doubles()
+    plain = found.in_doubles()
     second = found.seeds[1]
     orbits = []
     for phase in np.linspace(0, 2 * np.pi, ORBITS + 1):
         phases = {**plain.phases, second: plain.phases[second] + phase}
-        orbits.append(_phase_space(_shifted(plain, phases), times))
+        orbits.append(_phase_space(replace(plain, phases=phases), times))
     Q, P = zip(*orbits, strict=True)
     return np.array(Q), np.array(P)
 
 
-def _one_orbit(found: Solution, times: Floats) -> tuple[Floats, Floats]:
+def _one_orbit(found: QuasiPeriodic, times: Floats) -> tuple[Floats, Floats]:
     Q, P = _phase_space(found, times)
     return Q[None], P[None]
-
-
-def _shifted(found: FourierTorus | RingTorus, phases: dict[int, float]) -> Solution:
-    """The same torus from other phases."""
-    if isinstance(found, RingTorus):
-        return replace(found, phases=phases)
-    parts = (found.chain, found.seeds, found.frequencies, found.harmonics)
-    return FourierTorus(*parts, found.cosines, phases)
 
 
 def _draw(axes: Axes, parts: Sequence[Floats], *, angles: int) -> None:

@@ -19,6 +19,7 @@ from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.families.family import Family
 from symfpu.families.normal_family import NormalFamily
+from symfpu.frames.attributes import exact_text
 from symfpu.integrable.invariants import TodaInvariants
 from symfpu.normal.modes import NormalModes
 from symfpu.numbers.arithmetic import text
@@ -44,7 +45,6 @@ from symfpu.spectral.analysis import FrequencyAnalysis
 from symfpu.spectral.mapping import FrequencyMap
 from symfpu.tori.amplitudes import AmplitudeHistory
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.verdict import Assessment
 
 SIZE, DPI = (4.2, 2.9), 75  # of the picture beside an answer
@@ -109,6 +109,12 @@ def _number(value: Any, digits: int | None = None) -> str:
     return written if len(written) <= LONGEST else f"{written[:LONGEST]}..."
 
 
+def _frequency(omega: Any) -> str:
+    """As it is typed; a long fraction as a double."""
+    typed = exact_text(omega)
+    return typed if len(typed) <= LONGEST else f"{float(omega):.15g}"
+
+
 def _listed(values: Any) -> str:
     return ", ".join(map(str, values))
 
@@ -121,10 +127,8 @@ def _torus_rows(result: Any) -> Rows:
     digits = getattr(result, "digits", None)
     yield "chain", _model(result.chain)
     for q, omega in zip(result.seeds, result.frequencies, strict=True):
-        frequency = decimal(omega)
-        short = frequency if len(frequency) <= LONGEST else f"{float(omega):.15g}"
         size = _number(result.amplitudes[q], digits)
-        yield f"seed {q}", f"\N{GREEK SMALL LETTER OMEGA} = {short}, A = {size}"
+        yield f"seed {q}", f"\N{GREEK SMALL LETTER OMEGA} = {_frequency(omega)}, A = {size}"
     yield "energy H", _number(result.energy(), digits)
     yield "harmonics", f"{len(result.harmonics)}"
 
@@ -137,7 +141,7 @@ def _series_rows(series: LindstedtSeries) -> Rows:
     yield "chain", _model(series.chain)
     yield "seeds", _listed(series.seeds)
     if series.frequencies is not None:
-        yield "frequencies", _listed(decimal(w) for w in series.frequencies)
+        yield "frequencies", _listed(map(_frequency, series.frequencies))
     yield "ring", series.precision
     if series.smallest_divisors:
         yield "smallest divisor", repr(series.smallest_divisors[0])
@@ -292,7 +296,6 @@ _energy_series.__name__ = "time_series"
 
 USUAL = (
     Usual(QuasiPeriodic, spectrum, _torus_verdict, _torus_rows),
-    Usual(RingTorus, spectrum, _torus_verdict, _torus_rows),
     Usual(
         LindstedtSeries,
         small_divisors,

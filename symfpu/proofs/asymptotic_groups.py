@@ -14,6 +14,7 @@ from symfpu.chain.chain import Chain
 from symfpu.chain.length import HighMode
 from symfpu.chain.symbols import energy_symbol
 from symfpu.errors import InputError
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, rational
 from symfpu.proofs.asymptotics import asymptotic_energy, require_symbolic
 from symfpu.series.closed_forms import collect_terms
@@ -21,6 +22,7 @@ from symfpu.series.closed_forms import collect_terms
 ENDS = ("low", "high")
 
 
+@public
 def asymptotic_group_energy(
     chain: Chain, s: int, k: int, *, terms: int = 2, end: str = "low"
 ) -> Any:
@@ -51,6 +53,7 @@ def asymptotic_group_energy(
     return se.expand(formula.subs({energy_symbol(q): share for q in labels}))
 
 
+@public
 def asymptotic_profile(
     chain: Chain, s: int, k: int, *, terms: int = 2, end: str = "low"
 ) -> Any:

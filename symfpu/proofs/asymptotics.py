@@ -26,15 +26,17 @@ import symengine as se
 from numpy.typing import NDArray
 
 from symfpu.algebra.formulas import Coupling, Multiplier
+from symfpu.algebra.laurent import Laurent
 from symfpu.algebra.program_values import ancestors, values_in
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.length import HighMode, mode_label, mode_of, seed_labels
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.chain.symbols import amplitude_symbol, energy_symbol, phase_symbol
 from symfpu.errors import InputError
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, rational
+from symfpu.proofs.long_chain import BOTH_ENDS, ONE_END, LongChain
 from symfpu.series.all_lengths import SeriesForAllN, ends_reached, in_order
-from symfpu.series.laurent import BOTH_ENDS, ONE_END, Laurent, LongChain
 from symfpu.series.lindstedt import lindstedt
 
 GUARD = 2  # coefficients beyond those asked for, at first
@@ -43,6 +45,7 @@ MOST = 128  # coefficients after which a term counts as zero
 Mode = int | str
 
 
+@public
 def asymptotic_divisor(
     mode: Mode,
     seeds: Sequence[Mode],
@@ -93,6 +96,7 @@ def asymptotic_divisor(
     return se.expand(found)
 
 
+@public
 def asymptotic_term(series: SeriesForAllN, q: Mode, order: int, *, terms: int = 2) -> Any:
     """Q_q^(k) of a long chain at fixed amplitudes, as the first terms in 1/N.
 
@@ -142,6 +146,7 @@ def asymptotic_term(series: SeriesForAllN, q: Mode, order: int, *, terms: int = 
     return se.expand(total)
 
 
+@public
 def asymptotic_energy(
     chain: Chain, seeds: Sequence[Mode], q: Mode, *, terms: int = 2
 ) -> Any:

@@ -31,7 +31,8 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
-from symfpu.numbers.typed import integer, seed_modes
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import integer, integer_between, length_of, order_of, seed_modes
 from symfpu.proofs.seed_sums import modes_of_one_parity
 from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.force import force_numbers
@@ -44,6 +45,7 @@ from symfpu.series.series import LindstedtSeries
 FORMAT = "symfpu propagation certificate"
 SCHEMA, POTENTIALS = 1, 2  # of alpha and beta, of other potentials
 SINGLE = ("alpha", "beta")  # models of one coupling, for which the rule is stated
+MOST_POINTS = 1000  # of independent primes and frequencies; each is a run of the recursion
 ATTEMPTS = 50  # points tried before giving up on vanishing divisors
 IDENTITY_TERMS = 4000  # monomials times modes up to which an identity is tried
 IDENTITY_ORDER = 4
@@ -123,6 +125,7 @@ class RuleException:
         return {"mode": self.mode, "predicted": self.predicted, "actual": self.actual}
 
 
+@public
 @dataclass(frozen=True)
 class PropagationProof(Shown, Tabled):
     """The Proposition's D_k beside the actual ones up to an order, and everything that shows it.
@@ -269,6 +272,7 @@ def _point_record(point: ResiduePoint) -> dict[str, Any]:
     return {"prime": point.prime, "root": point.root, "frequencies": frequencies}
 
 
+@public
 def prove_propagation(
     N: int,
     seeds: Sequence[int],
@@ -286,8 +290,8 @@ def prove_propagation(
     N : number of bonds, at least 2. seeds : distinct modes D_0. order : the last k.
         model : 'alpha' (default) or 'beta'. potential : in its place, that of any chain with
         exact coefficients, such as toda("1/2") or "poly:1,2/3". All are dimensionless, exact.
-    points : independent primes and random frequencies, each a run of the recursion; with 0
-        nothing can be shown excited.
+    points : independent primes and random frequencies, each a run of the recursion, 1000 at
+        most; with 0 nothing can be shown excited.
     random_seed : the same seed gives the same points.
     workers : threads of the recursion; default as many as there are processors.
     progress : called as (label, fraction done).
@@ -300,12 +304,12 @@ def prove_propagation(
     >>> prove_propagation(8, (1, 4), 3, model="beta")
     PropagationProof(N=8, beta, seeds=1,4, order 3: refuted; mode 7 predicted at 1, actually 2)
     """
-    N = integer(N, "N", 2)
-    points = integer(points, "points", 0)
+    N = length_of(N)
+    points = integer_between(points, "points", 0, MOST_POINTS, "fewer points")
     chain = proved_chain(N, model, potential)
     modes = seed_modes(seeds, N)
     seeds = tuple(sorted(modes))
-    order = integer(order, "order", 0)
+    order = order_of(order)
     check_size(chain, seeds, order, "residue")
     if workers is not None:
         integer(workers, "workers", 1)

@@ -13,7 +13,7 @@ from symfpu.proofs.every_length import DecidedFlat
 from symfpu.proofs.flats import Flat
 from symfpu.series.coefficients import ResiduePoint
 
-FORMAT, SCHEMA = "symfpu decided flats", 2
+FORMAT, SCHEMA = "symfpu decided flats", 3
 
 Json = dict[str, Any]
 

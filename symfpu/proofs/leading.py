@@ -27,18 +27,19 @@ import symengine as se
 
 from symfpu.algebra.formulas import multiplier_symbol
 from symfpu.chain.chain import Chain, require_chain
-from symfpu.chain.propagation import product_modes
+from symfpu.chain.propagation import excitation_sequence, product_modes
 from symfpu.errors import InputError
-from symfpu.numbers.typed import integer, seed_modes
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import HIGHEST_ORDER, integer, order_of, seed_modes
+from symfpu.proofs.kernel_trees import count_trees
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 
+MOST_PRODUCTS = 2 * 10**6  # of the kernels of one order: ten seconds, about
 # exponents (p_1, n_1, ..., p_s, n_s) of w_i = Omega_i (A_i/2) exp(i theta_i) and its conjugate
 Monomial = tuple[int, ...]
 Polynomial = dict[Monomial, Any]
 Block = tuple[tuple[int, int], ...]  # pairs (n_i, sigma_i)
-# the shape of a product in K: () is a seed, else a tuple of two or three smaller shapes
-Tree = tuple[Any, ...]
 
 
 @dataclass(frozen=True)
@@ -89,10 +90,20 @@ def leading_terms(chain: Chain, seeds: Sequence[int], order: int) -> dict[int, L
     LeadingTerm(mode=4, order=2, seeds=(2, 3))
     """
     modes = _seeds(chain, seeds)
-    last = integer(order, "order", 0)
-    return dict(_leading(chain, modes, last))
+    last = order_of(order)
+    sequence = excitation_sequence(chain.N, modes, last, potential=chain.potential)
+    reached = max(k for k, excited in enumerate(sequence) if excited)
+    _require_few_products(chain, sequence, reached, "order")
+    terms: dict[int, LeadingTerm] = {}
+    others = _closure(chain, set(modes)).difference(modes)
+    for k in range(1, last + 1):
+        if others == terms.keys():
+            break
+        terms = _leading(chain, modes, k)
+    return dict(terms)
 
 
+@public
 def leading_term(chain: Chain, seeds: Sequence[int], q: int) -> Any:
     """Q_q^(k) at the order k of its first excitation (Lemma, Eq. Qqkr), without mu^k, in symbols.
 
@@ -100,7 +111,8 @@ def leading_term(chain: Chain, seeds: Sequence[int], q: int) -> Any:
         dimensionless, phases theta in radians.
 
     A SymEngine expression in A_i, theta_i, Omega_q and L_q(nu), as of a series in universal form.
-    The work grows exponentially with k. The Lemma is read with K_m^(0)(n) = delta_{m,n}, which it
+    The work grows exponentially with k: a mode of an order with more than 2 10^6 products is
+    refused. The Lemma is read with K_m^(0)(n) = delta_{m,n}, which it
     needs and does not print.
     Raises InputError for a seed, a mode that the seeds never excite, and as `leading_terms`.
 
@@ -110,7 +122,12 @@ def leading_term(chain: Chain, seeds: Sequence[int], q: int) -> Any:
     require_chain(chain)
     modes = _seeds(chain, seeds)
     if integer(q, "q", 1) not in modes and q in _closure(chain, set(modes)):
+        top = min(2 * chain.N, HIGHEST_ORDER)
+        sequence = excitation_sequence(chain.N, modes, top, potential=chain.potential)
+        earliest = next((k for k, excited in enumerate(sequence) if q in excited), top)
+        _require_few_products(chain, sequence, earliest, "q")
         for k in range(1, 2 * chain.N):
+            _require_few_products(chain, sequence, k, "q")
             terms = _leading(chain, modes, k)
             if q in terms:
                 return terms[q].expression()
@@ -157,6 +174,7 @@ def leading_kernel(
     return se.expand(kernels.get(q, se.Integer(0)))
 
 
+@public
 def lemma_holds(chain: Chain, seeds: Sequence[int], order: int) -> dict[int, bool]:
     """For every mode excited at 1 .. order: is the Lemma's term that of the recursion?
 
@@ -338,100 +356,23 @@ def _weighted(chain: Chain, seeds: tuple[int, ...], block: Block) -> dict[int, A
     return weighted
 
 
-def kernel_trees(order: int, factors: int) -> Counter[Tree]:
-    """The shapes of product in K^(k), largest block first, with their numbers of arrangements.
+def _require_few_products(
+    chain: Chain, sequence: Sequence[Sequence[int]], order: int, argument: str
+) -> None:
+    """InputError for an order whose kernels have more products than end soon.
 
-    Eqs. Kkga (2 factors), Kk (3).
-
-    >>> kernel_trees(2, 2)
-    Counter({(((), ()), ()): 2})
+    sequence : the modes by the order that first excites them, the seeds first. A product is a tree
+    whose leaves have two signs, and its factors are modes of lower orders. So it has as many
+    choices of modes as the most that one order excites; the number of seeds is what was found for
+    up to five.
     """
-    if integer(order, "order", 0) == 0:
-        return Counter([()])
-    trees: Counter[Tree] = Counter()
-    for orders in product(range(order), repeat=factors):
-        if sum(orders) != order - 1:
-            continue
-        shapes = [kernel_trees(l, factors).items() for l in orders]
-        for chosen in product(*shapes):
-            parts = sorted(
-                (t for t, _ in chosen), key=lambda t: (_leaves(t), t), reverse=True
-            )
-            trees[tuple(parts)] += prod(count for _, count in chosen)
-    return trees
-
-
-def appendix_d(order: int = 3, *, model: str = "alpha", one_symbol: bool = True) -> str:
-    r"""K^(1) .. K^(order) as LaTeX in the layout of Appendix D (Eq. Kqalpha).
-
-    Equal products of Eqs. Kkga, Kk are collected (`kernel_trees`).
-
-    one_symbol : q_0 for all seeds and q_l for all modes of D_l, as in the paper; otherwise seeds
-    n_1 .. n_r, and q_l, q_l' for two modes of one D_l, sums over D_l understood. Collecting
-    changes K(n, sigma), but not its sum over all arrangements. The paper's square in K^(3) is
-    wrong: the second block has sigma_3, sigma_4. Raises InputError.
-
-    >>> print(appendix_d(1).splitlines()[1])
-    &&\mathcal{K}_{q_1 ; \alpha} ^{(1)} = B_{q_1 q_0 q_0}
-    """
-    factors = {"alpha": 2, "beta": 3}
-    if model not in factors:
-        raise InputError(
-            "model", model, "'alpha' or 'beta'", "the Lemma is stated for these"
-        )
-    lines = []
-    for k in range(1, integer(order, "order", 1) + 1):
-        terms = []
-        for tree, count in kernel_trees(k, factors[model]).most_common():
-            number = f"{count} " if count > 1 else ""
-            terms.append(number + _latex(tree, one_symbol=one_symbol))
-        kernel = rf"\mathcal{{K}}_{{q_{k} ; \{model}}} ^{{({k})}}"
-        lines.append(rf"&&{kernel} = {' + '.join(terms)}")
-    body = " \\nonumber\\\\\n".join(lines)
-    return "\n".join([r"\begin{eqnarray}", body, r"\end{eqnarray}"])
-
-
-def _latex(tree: Tree, *, one_symbol: bool) -> str:
-    """One product of K as a fraction of the L times couplings, the earliest first."""
-    couplings, squares, divisors = Counter[str](), Counter[str](), Counter[str]()
-    used = Counter[int]()
-
-    def visit(node: Tree, first: int) -> str:
-        """The name of the node's mode; its block begins with sigma_first."""
-        if not node:
-            return "q_0" if one_symbol else f"n_{first}"
-        level = (_leaves(node) - 1) // (len(node) - 1)
-        primes = 0 if one_symbol else used[level]
-        name = f"q_{level}" + "'" * primes
-        used[level] += 1
-        names = [name]
-        start = first
-        for child in node:
-            names.append(visit(child, start))
-            start += _leaves(child)
-        letter = "B" if len(node) == 2 else "C"
-        couplings[f"{letter}_{{{' '.join(names)}}}"] += 1
-        if node is not tree:
-            block = range(first, first + _leaves(node))
-            rates = [rf"\sigma_{i} \omega_{{{visit((), i)}}}" for i in block]
-            squares[rf"\Omega_{{{name}}}"] += 2
-            divisors[rf"[\Omega_{{{name}}}^2 - ({'+'.join(rates)})^2]"] += 1
-        return name
-
-    visit(tree, 1)
-    product_of_couplings = _latex_product(couplings)
-    if not divisors:
-        return product_of_couplings
-    top, bottom = _latex_product(squares), _latex_product(divisors)
-    return rf"\frac{{{top}}}{{{bottom}}} " + product_of_couplings
-
-
-def _latex_product(powers: Counter[str]) -> str:
-    return " ".join(f"{factor}^{e}" if e > 1 else factor for factor, e in powers.items())
-
-
-def _leaves(tree: Tree) -> int:
-    return sum(map(_leaves, tree)) if tree else 1
+    factors, seeds = chain.degree_step + 1, len(sequence[0])
+    widest = max(map(len, sequence[: max(order, 1)]))
+    count = seeds * widest**factors * count_trees(order, factors, 2)
+    if count > MOST_PRODUCTS:
+        allowed = f"first excited at an order with at most {MOST_PRODUCTS:,} products"
+        advice = "take a lower order, or a mode nearer to the seeds"
+        raise InputError(argument, f"of order {order}", allowed, advice)
 
 
 def _factor(q: int, order: int, modes: Sequence[int], nu: tuple[int, ...]) -> Any:

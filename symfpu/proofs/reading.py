@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 LARGEST_FILE = 2**26  # bytes
 LONGEST_NUMBER = 20_000  # characters
+LONGEST_LAW = 100_000  # characters of all numbers of a potential, times their powers
 MOST_BITS = 8192  # of a mantissa
 EXACT = re.compile(r"-?[0-9]+(/[1-9][0-9]*)?")
 READING_ERRORS = (
@@ -127,6 +128,15 @@ def fraction(text: Any, name: str) -> Fraction:
     readable = type(text) is str and len(text) <= LONGEST_NUMBER and EXACT.fullmatch(text)
     need(readable, f"{name} is no fraction")
     return Fraction(text)
+
+
+def fractions(texts: Any, power: int, name: str) -> list[Fraction]:
+    """The exact numbers of a potential, whose products have so many factors at most."""
+    need(type(texts) is list, f"{name}: no list")
+    need(all(type(text) is str for text in texts), f"{name}: no fractions")
+    fits = sum(map(len, texts)) * power <= LONGEST_LAW
+    need(fits, f"{name}: more than {LONGEST_LAW} characters, times the powers")
+    return [fraction(text, name) for text in texts]
 
 
 def dyadic(pair: Any, name: str) -> Fraction:

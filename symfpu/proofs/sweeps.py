@@ -6,6 +6,7 @@ interrupted sweep goes on. A case that raises an error loses no other.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor
@@ -16,16 +17,19 @@ from typing import Any
 
 from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.propagation import coupling_sequence
-from symfpu.errors import SymfpuError
+from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.counted import counted
-from symfpu.numbers.typed import integer
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import integer, length_of, order_of
 from symfpu.proofs.certificates import law_name, prove_propagation, proved_chain
 from symfpu.sweeps.rows import SweepFailure, SweepRow
 from symfpu.sweeps.sweep import SweepStopped, sweep
+
+MOST_CASES = 10**7  # of one sweep, which has all of them in memory
 
 Key = tuple[int, tuple[int, ...]]  # N and the seeds
 
@@ -122,6 +126,7 @@ def decide(N: int, seeds: tuple[int, ...], *, potential: str, order: int) -> dic
     return asdict(SweepCase(N, tuple(seeds), proof.verdict, exceptions, corrected))
 
 
+@public
 def sweep_propagation(
     lengths: Iterable[int],
     largest_set: int,
@@ -151,14 +156,15 @@ def sweep_propagation(
     >>> [(case.seeds, case.verdict) for case in sweep.cases]
     [((1,), 'proved'), ((2,), 'proved'), ((3,), 'proved')]
     """
-    lengths = sorted({integer(N, "N", 2) for N in lengths})
-    largest_set, order = integer(largest_set, "largest_set", 1), integer(order, "order", 0)
+    lengths = sorted({length_of(N) for N in lengths})
+    largest_set, order = integer(largest_set, "largest_set", 1), order_of(order)
     chain = proved_chain(2, model, potential)
     law, name = chain.potential.text, law_name(chain)
+    _check_count(lengths, largest_set)
     cases: list[dict[str, Any]] = [
         {"N": N, "seeds": seeds}
         for N in lengths
-        for s in range(1, largest_set + 1)
+        for s in range(1, min(largest_set, N - 1) + 1)
         for seeds in combinations(range(1, N), s)
     ]
     shared = {"potential": law, "order": order}
@@ -176,6 +182,22 @@ def sweep_propagation(
     if failures:
         raise SweepIncomplete(result, failures)
     return result
+
+
+def _check_count(lengths: Sequence[int], largest_set: int) -> None:
+    """InputError for more seed sets than fit into memory, by their number alone."""
+    counts: dict[int, int] = {}
+    total = 0
+    for N in lengths:
+        total += sum(math.comb(N - 1, s) for s in range(1, min(largest_set, N - 1) + 1))
+        counts[N] = total
+        if total > MOST_CASES:
+            fitting = [N for N, count in counts.items() if count <= MOST_CASES]
+            advice = (
+                f"take lengths up to {max(fitting)}" if fitting else "take smaller sets"
+            )
+            allowed = f"lengths and sets of at most {MOST_CASES:,} cases"
+            raise InputError("lengths", f"{N} and shorter", allowed, advice)
 
 
 def _rows(

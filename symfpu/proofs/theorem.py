@@ -21,7 +21,8 @@ from symfpu.files.writing import write_text
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Columns, Table
 from symfpu.frames.tabled import Tabled
-from symfpu.numbers.typed import integer, seed_modes
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import integer, length_of, order_of, seed_modes
 from symfpu.proofs.decided_file import DecidedFile
 from symfpu.proofs.every_length import DecidedFlat, decided_flat
 from symfpu.proofs.families import equation_text, mode_text
@@ -56,6 +57,7 @@ class ExceptionalFlat:
         return f"{', '.join(self.equations)}   (modes {shifts})"
 
 
+@public
 @dataclass(frozen=True)
 class RuleForAllN(Tabled):
     """The Proposition for all sets of s seeds and every N, up to an order: a theorem.
@@ -135,7 +137,7 @@ class RuleForAllN(Tabled):
         >>> prove_for_all_N("beta", 2, 1).deciding(1000, (7, 500)).flat
         Flat(N=8, seeds=(1, 4), dimension=1)
         """
-        modes = sorted(seed_modes(seeds, integer(N, "N", 2)))
+        modes = sorted(seed_modes(seeds, length_of(N)))
         if len(modes) != self.seeds_number:
             allowed = f"{self.seeds_number} modes"
             raise InputError("seeds", tuple(seeds), allowed, "prove it for as many seeds")
@@ -265,6 +267,7 @@ def _exceptional(
     return ExceptionalFlat(equations, flat.dimension, modes, flat.N, flat.seeds)
 
 
+@public
 def prove_for_all_N(
     model: str,
     seeds_number: int,
@@ -300,7 +303,7 @@ def prove_for_all_N(
     if model not in MODELS:
         advice = "other potentials are proved N by N: prove_propagation"
         raise InputError("model", model, "'alpha' or 'beta'", advice)
-    s, last = integer(seeds_number, "seeds_number", 1), integer(order, "order", 1)
+    s, last = integer(seeds_number, "seeds_number", 1), order_of(order, 1)
     if s > MOST_SEEDS:
         allowed = f"1 to {MOST_SEEDS}"
         advice = "flats of more seeds are not enumerated; prove_propagation decides one set"

@@ -12,20 +12,21 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from symfpu.refinement.equation import Floats, TorusEquation
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import Floats
 
 
 class Condition(Protocol):
     """One equation more."""
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         """What is to be zero, relative to its own size."""
         ...
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         """Derivatives of the value by coefficients (H, C) and shifts (s,), in doubles."""
         ...
@@ -39,19 +40,19 @@ class FrequencyShift:
     shift: np.longdouble
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         off = shifts[self.place] - self.shift
         return np.longdouble(off / self._size(equation))
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         by_shift = np.zeros(len(shifts))
         by_shift[self.place] = 1 / float(self._size(equation))
         return np.zeros(cosines.shape), by_shift
 
-    def _size(self, equation: TorusEquation) -> np.longdouble:
+    def _size(self, equation: InvarianceEquation) -> np.longdouble:
         return np.longdouble(equation.seed_frequencies[self.place])
 
 
@@ -67,13 +68,13 @@ class Crossing:
     size: float
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         moved = np.dot(np.array(self.harmonic), shifts)
         return np.longdouble((moved - self.shift) / self.size)
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         by_shift = np.array(self.harmonic) / self.size
         return np.zeros(cosines.shape), by_shift
@@ -87,13 +88,13 @@ class Amplitude:
     amplitude: np.longdouble
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         A = seed_amplitudes(equation, cosines)[self.place]
         return np.longdouble(A / self.amplitude - 1)
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         row, column = equation.seed_rows[self.place], equation.seed_columns[self.place]
         by_cosine = np.zeros(cosines.shape)
@@ -114,21 +115,21 @@ class Start:
     size: float
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         column = cosines[:, equation.seed_columns[self.place]]
         found = self._waves(equation) @ column
         return np.longdouble((found - self.coordinate) / self.size)
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         by_cosine = np.zeros(cosines.shape)
         waves = self._waves(equation).astype(float)
         by_cosine[:, equation.seed_columns[self.place]] = waves / self.size
         return by_cosine, np.zeros(len(shifts))
 
-    def _waves(self, equation: TorusEquation) -> Floats:
+    def _waves(self, equation: InvarianceEquation) -> Floats:
         angles = equation.harmonics @ np.array(self.phases, dtype=np.longdouble)
         return np.asarray(np.cos(angles))
 
@@ -141,14 +142,14 @@ class AmplitudeRatio:
     ratio: float
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         A = seed_amplitudes(equation, cosines)
         expected = self.ratio * A[0]
         return np.longdouble(A[self.place] / expected - 1)
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         by_cosine = np.zeros(cosines.shape)
         rows, columns = equation.seed_rows, equation.seed_columns
@@ -170,13 +171,13 @@ class AmplitudeLine:
     steps: Floats
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         (i, j), gone = self.places, seed_amplitudes(equation, cosines) - self.start
         return np.longdouble(self.steps[i] * gone[j] - self.steps[j] * gone[i])
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         (i, j), by_cosine = self.places, np.zeros(cosines.shape)
         rows, columns = equation.seed_rows, equation.seed_columns
@@ -193,14 +194,14 @@ class EnergyRatio:
     ratio: float
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         first, _ = equation.seed_energy(0, cosines, shifts)
         own, _ = equation.seed_energy(self.place, cosines, shifts)
         return np.longdouble(own / (self.ratio * first) - 1)
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         first, of_first = equation.seed_energy(0, cosines, shifts)
         own, of_own = equation.seed_energy(self.place, cosines, shifts)
@@ -223,13 +224,13 @@ class Energy:
     harmonic: bool
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         energy, _ = equation.energy(cosines, shifts, harmonic=self.harmonic)
         return np.longdouble(energy / self.energy - 1)
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         _, slopes = equation.energy(cosines, shifts, harmonic=self.harmonic)
         by_cosine, by_shift = ((slope / self.energy).astype(float) for slope in slopes)
@@ -249,14 +250,14 @@ class Plane:
     distance: float
 
     def value(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
         x = plane_variables(equation, cosines, shifts, self.scales)
         gone = np.dot(np.array(self.tangent), x - np.array(self.start))
         return np.longdouble(gone - self.distance)
 
     def gradient(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats
+        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> tuple[Floats, Floats]:
         s, tangent = len(shifts), np.array(self.tangent)
         A = seed_amplitudes(equation, cosines).astype(float)
@@ -266,13 +267,13 @@ class Plane:
         return by_cosine, by_shift
 
 
-def seed_amplitudes(equation: TorusEquation, cosines: Floats) -> Floats:
+def seed_amplitudes(equation: InvarianceEquation, cosines: Floats) -> Floats:
     """A of every seed, with its sign; shape (s,)."""
     return np.asarray(cosines[equation.seed_rows, equation.seed_columns])
 
 
 def plane_variables(
-    equation: TorusEquation, cosines: Floats, shifts: Floats, scales: Sequence[float]
+    equation: InvarianceEquation, cosines: Floats, shifts: Floats, scales: Sequence[float]
 ) -> Floats:
     """(ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
     A = seed_amplitudes(equation, cosines)

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.lattice import (
+    Floats,
+    Ints,
     Lattice,
     dilated,
     has_holes,
@@ -18,6 +19,9 @@ from symfpu.refinement.lattice import (
 
 # harmonics of the slopes that sparse rows hold, and their least height, relative
 MOST_SLOPES, SHARE = 12, 0.1
+LEAST_COUPLING = (
+    1e-3  # of two columns by one harmonic of the slopes, in sparse rows, relative
+)
 LEAST_STEP = 1e-3  # height of those by which further harmonics are reached, relative
 
 
@@ -79,13 +83,13 @@ def shifted(harmonics: Ints, rows: Ints, kappa: Ints) -> tuple[Ints, Ints]:
 def sparse_rows(
     mask: Any,
     kappas: Ints,
-    coupled: Callable[[Ints], tuple[Floats, Ints, Ints]],
+    coupled: Callable[[Ints, float], tuple[Floats, Ints, Ints]],
     count: int,
 ) -> Any:
     """A sparse matrix (count, unknowns) from what every harmonic of the slopes couples.
 
-    coupled : of a harmonic, values (k, C), their rows (k,) and harmonics (k,), one value for each
-    of the unknowns of the harmonic.
+    coupled : of a harmonic and the least coupling, values (k, C), their rows (k,) and harmonics
+    (k,), one value for each of the unknowns of the harmonic.
     """
     from scipy import sparse
 
@@ -94,7 +98,7 @@ def sparse_rows(
     number[mask] = np.arange(unknowns, dtype=np.int32)
     parts = []
     for kappa in kappas:
-        values, rows, harmonics = coupled(kappa)
+        values, rows, harmonics = coupled(kappa, LEAST_COUPLING)
         columns = number[harmonics]
         k, c = np.nonzero((values != 0) & (columns >= 0))
         parts.append((values[k, c], rows[k], columns[k, c]))

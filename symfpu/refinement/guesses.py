@@ -10,22 +10,20 @@ import numpy as np
 
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import mpf
+from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.numbers.typed import Number, exact
-from symfpu.refinement.equation import Floats
-from symfpu.refinement.invariance import DIGITS, long
+from symfpu.refinement.lattice import Floats
 from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
-from symfpu.tori.ring_torus import RingTorus
-from symfpu.tori.travelling import require_travelling
 
 LEAST_SIZE = Fraction(1, 10**40)  # of amplitudes and coefficients
 
 
 def require_torus(torus: object) -> None:
     """InputError for what is no solution, and for standing waves on a ring."""
-    if isinstance(torus, RingTorus):
-        require_travelling(torus)
-    else:
-        require_solution(torus, "torus")
+    if require_solution(torus, "torus").stands:
+        allowed = "a torus of fixed ends, or of travelling waves of a ring"
+        advice = "refine the solution with fixed ends and unfold it"
+        raise InputError("torus", "a torus of standing waves", allowed, advice)
 
 
 def numbers_by_seed(
@@ -61,7 +59,7 @@ def require_moderate(coefficients: Floats) -> None:
         raise InputError("torus", given, allowed, "take another guess")
 
 
-def shifts_of(torus: QuasiPeriodic | RingTorus) -> Floats:
+def shifts_of(torus: QuasiPeriodic) -> Floats:
     """omega - Omega of the seeds in long doubles; shape (s,)."""
     with mpmath.workdps(2 * DIGITS):
         linear = [torus.chain.linear_frequency(q) for q in torus.seeds]

@@ -7,8 +7,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from symfpu.refinement.equation import Floats, Ints
-from symfpu.refinement.lattice import OVERSAMPLING
+from symfpu.refinement.lattice import OVERSAMPLING, Floats, Ints
 
 SMALLEST_KEPT = 1e-18  # of the largest coefficient: smaller ones of a guess are left out
 LARGEST_GRID = 60_000_000  # values of the functions; arrays of 480 MB

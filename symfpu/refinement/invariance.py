@@ -1,73 +1,40 @@
 """The invariance equation of a torus in Fourier space: linear part exact, products pseudo-spectral.
 
-Q_q(theta) = sum over nu of c_q[nu] cos(nu.theta) is a torus of the chain if for every mode and
-harmonic ((nu.omega)^2 - Omega_q^2) c_q[nu] = N_q[nu], N the transform of V'(r) - r, which is
+Q(theta) = sum over nu of c[nu] cos(nu.theta) is a torus of the chain if for every harmonic and
+column ((nu.omega)^2 - Omega^2) c[nu] = N[nu], N the transform of V'(r) - r, which is
 alpha r^2 + beta r^3 in an FPU chain, with the stretches r of the bonds on points of all angles.
-Reflection of the chain shifts the angles by half turns: only c with q = nu.seeds (mod 2) are
-unknowns (where V is even also nu of odd length), and half of the bonds are enough. All sums of
-one kind run in one precision, doubles or the machine's long doubles.
+What the columns are, which bonds are enough and where c are unknowns is said by the projection
+of the chain (`symfpu.chain.projections`): of fixed ends a column for every mode, of travelling
+waves on a ring one. All sums of one kind run in one precision, doubles or long doubles.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import Any
 
 import mpmath
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
 from symfpu.chain import bonds
 from symfpu.chain.chain import Chain
-from symfpu.numbers.arithmetic import Arithmetic, mpf
+from symfpu.chain.projections.by_ends import projection
+from symfpu.chain.projections.modes import ModeProjection
+from symfpu.chain.projections.projection import Projection
+from symfpu.numbers.long_doubles import DIGITS, LONG_DOUBLES, in_halves
 from symfpu.refinement.couplings import (
     largest_slopes,
     shifted,
     sparse_rows,
     steps_by_slopes,
 )
-from symfpu.refinement.equation import Floats, Ints, Slopes
-from symfpu.refinement.lattice import Lattice, halves_of_pairs, places_of
+from symfpu.refinement.lattice import Floats, Ints, Lattice, halves_of_pairs, places_of
+
+Slopes = tuple[Floats, Floats]  # derivatives by coefficients (H, C) and by shifts (s,)
 
 PORTION = 4_000_000  # values of all bonds transformed at once
-LEAST_COUPLING = (
-    1e-3  # of two modes by one harmonic of the slopes, relative, in sparse rows
-)
+ROWS = 16  # of a block, made at once
 APART = 1e-5  # of stretches, for a derivative by differences
-DIGITS = 30  # of the numbers that long doubles are made of
-
-
-def long(value: Any) -> np.longdouble:
-    """A rational or an mpf as a long double."""
-    with mpmath.workdps(DIGITS):
-        exact = mpf(value)
-        return np.longdouble(mpmath.nstr(exact, DIGITS))
-
-
-class LongDoubles(Arithmetic):
-    """Numbers as long doubles."""
-
-    def number(self, value: Fraction) -> np.longdouble:
-        return long(value)
-
-
-LONG_DOUBLES = LongDoubles()
-
-
-def rational(value: np.longdouble) -> Fraction:
-    """A long double as the number it is."""
-    high = float(value)
-    low = float(value - np.longdouble(high))
-    return Fraction(high) + Fraction(low)
-
-
-def halves(value: Any) -> tuple[np.longdouble, np.longdouble]:
-    """An mpf as the sum of two long doubles."""
-    high = long(value)
-    with mpmath.workdps(2 * DIGITS):
-        return high, long(value - mpf(rational(high)))
 
 
 def curvature(law: bonds.Law, r: Floats) -> Floats:
@@ -77,9 +44,11 @@ def curvature(law: bonds.Law, r: Floats) -> Floats:
 
 
 class InvarianceEquation:
-    """The equations of one torus: divisors and forces of coefficients, all (H, N-1).
+    """The equations of one torus: divisors and forces of coefficients, all (H, C).
 
-    Coefficients are unknown where `mask` holds.
+    projection : of the harmonics. mask : which coefficients are unknown, (H, C). linear : Omega of
+    every coefficient in long doubles, (H | 1, C). seed_rows, seed_columns : where the amplitudes of
+    the seeds are, (s,).
     """
 
     def __init__(
@@ -91,60 +60,26 @@ class InvarianceEquation:
     ) -> None:
         self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
         self.grid = Lattice(harmonics, apart)
-        self.mask = self.allowed(harmonics)
+        self.projection = projection(chain, seeds, harmonics)
+        self.mask, self.linear = self.projection.mask, self.projection.omega
         self.seed_rows = places_of(np.eye(len(seeds), dtype=np.int64), harmonics)
-        self.seed_columns = np.array(seeds) - 1
-        with mpmath.workdps(2 * DIGITS):
-            linear = [chain.linear_frequency(q) for q in range(1, chain.N)]
-        self.linear = np.array([long(w) for w in linear])
-        self._set_bonds()
-        self._set_divisors(linear)
+        self.seed_columns = np.array([self.projection.column(q) for q in seeds])
+        self._weights = 0.5 * halves_of_pairs(harmonics)  # of c^2 in the mean of a square
+        self._law = chain.law(LONG_DOUBLES)
+        self._set_divisors()
 
-    def allowed(self, harmonics: Ints) -> NDArray[np.bool_]:
-        """Where the selection rules let a mode carry a harmonic (H, s); shape (H, N-1)."""
-        modes = np.arange(1, self.chain.N)
-        of_harmonic = harmonics @ np.array(self.seeds) % 2
-        parity = of_harmonic[:, None] == modes % 2
-        if not self.chain.potential.even:
-            return np.asarray(parity)
-        odd = harmonics.sum(axis=1) % 2 == 1
-        return np.asarray(parity & odd[:, None])
-
-    def _set_bonds(self) -> None:
-        """Stretches by a unit of each mode, and the way back from half of the bonds."""
-        N, modes = self.chain.N, np.arange(1, self.chain.N)
-        with mpmath.workdps(2 * DIGITS):
-            exact = [mpmath.cospi(mpmath.mpf(k) / (2 * N)) for k in range(4 * N)]
-            cosines = np.array([long(x) for x in exact])
-            norm = long(mpmath.sqrt(mpmath.mpf(2) / N))
-        angles = np.outer(modes, 2 * np.arange(N) + 1) % (4 * N)
-        self._all_bonds = norm * self.linear[:, None] * cosines[angles]
-        half = np.arange((N + 1) // 2)
-        self._stretch = self._all_bonds[:, : len(half)]
-        own_image = 2 * half + 1 == N
-        self._back = self._stretch * np.where(own_image, 1, 2)
-        self._law = self.chain.law(LONG_DOUBLES)
-
-    def stretches_of_half(self) -> tuple[Floats, Floats]:
-        """Stretches of half of the bonds by a unit of each mode, and the way back, in doubles.
-
-        Both (N-1, bonds).
-        """
-        return self._stretch.astype(float), self._back.astype(float)
-
-    def _set_divisors(self, linear: Sequence[Any]) -> None:
+    def _set_divisors(self) -> None:
         """nu.Omega - Omega_q and nu.Omega + Omega_q from twice as many digits as they keep."""
-        of_seeds = [linear[q - 1] for q in self.seeds]
         with mpmath.workdps(2 * DIGITS):
+            of_seeds = [self.chain.linear_frequency(q) for q in self.seeds]
             exact = [mpmath.fdot(nu, of_seeds) for nu in self.harmonics.tolist()]
-        high, low = (np.array(part) for part in zip(*map(halves, linear), strict=True))
-        rates = zip(*map(halves, exact), strict=True)
-        rate_high, rate_low = (np.array(part)[:, None] for part in rates)
+        high, low = self.projection.omega_in_halves()
+        rate_high, rate_low = (part[:, None] for part in in_halves(exact))
         self._below = (rate_high - high) + (rate_low - low)
         self._above = (rate_high + high) + (rate_low + low)
 
     def divisors(self, shifts: Floats) -> Floats:
-        """(nu.omega)^2 - Omega_q^2 for omega = Omega + shifts of the seeds; shape (H, N-1).
+        """(nu.omega)^2 - Omega_q^2 for omega = Omega + shifts of the seeds; shape (H, C).
 
         All in long doubles.
 
@@ -161,109 +96,154 @@ class InvarianceEquation:
     @property
     def seed_frequencies(self) -> Floats:
         """Omega of the seeds in long doubles; shape (s,)."""
-        return np.asarray(self.linear[self.seed_columns])
+        linear = np.broadcast_to(self.linear, self.mask.shape)
+        return np.asarray(linear[self.seed_rows, self.seed_columns])
 
     def rates(self, shifts: Floats) -> Floats:
         """nu.omega in long doubles; shape (H,)."""
-        omega = self.seed_frequencies + shifts
-        return np.asarray(self.harmonics @ omega)
+        return np.asarray(self.harmonics @ (self.seed_frequencies + shifts))
+
+    def linear_at(self, harmonics: Ints) -> Floats:
+        """Omega of every coefficient at other harmonics (M, s); (M | 1, C)."""
+        return self.projection.at(harmonics).omega
 
     def _portions(self, grid: Lattice) -> list[slice]:
         """Bonds whose values on the points of a lattice fit into a portion."""
         step = max(1, PORTION // grid.points)
-        count = self._stretch.shape[1]
-        return [slice(j, j + step) for j in range(0, count, step)]
+        return [slice(j, j + step) for j in range(0, self.projection.points, step)]
 
     def force(self, cosines: Floats) -> Floats:
-        """N_q[nu] of coefficients (H, N-1), in their precision.
-
-        Zero where the mask does not hold.
-        """
-        return np.asarray(self._force(self.grid, cosines) * self.mask)
+        """N[nu] of coefficients (H, C), in their precision; 0 where the mask does not hold."""
+        return self._force(self.grid, self.projection, cosines)
 
     def force_on(self, grid: Lattice, cosines: Floats) -> Floats:
-        """The same of coefficients at the harmonics of another lattice, (M, N-1), at all of it."""
-        return np.asarray(self._force(grid, cosines) * self.allowed(grid.harmonics))
+        """The same of coefficients at the harmonics of another lattice, (M, C), at all of it."""
+        return self._force(grid, self.projection.at(grid.harmonics), cosines)
 
-    def _force(self, grid: Lattice, cosines: Floats) -> Floats:
-        kind = cosines.dtype
-        law = bonds.cast(self._law, kind)
-        total = np.zeros(cosines.shape, dtype=kind)
+    def _force(self, grid: Lattice, there: Projection, cosines: Floats) -> Floats:
+        law = bonds.cast(self._law, cosines.dtype)
+        total = np.zeros(cosines.shape, dtype=cosines.dtype)
         for part in self._portions(grid):
-            there = self._stretch[:, part].astype(kind)
-            back = self._back[:, part].T.astype(kind)
-            r = grid.values(cosines @ there)
+            r = grid.values(there.to_points(cosines, part))
             tension = bonds.anharmonic_tension(law, r)
-            total += grid.coefficients(tension) @ back
-        return total
+            total += there.from_points(grid.coefficients(tension), part)
+        return np.asarray(total * there.mask)
 
     def force_at(self, cosines: Floats, harmonics: Ints) -> Floats:
-        """The same at other harmonics (M, s) that the lattice tells apart; shape (M, N-1)."""
+        """The same at other harmonics (M, s) that the lattice tells apart; shape (M, C)."""
+        there = self.projection.at(harmonics)
         total = np.zeros((len(harmonics), cosines.shape[1]), dtype=np.longdouble)
         for part in self._portions(self.grid):
-            r = self.grid.values(cosines @ self._stretch[:, part])
+            r = self.grid.values(self.projection.to_points(cosines, part))
             tension = bonds.anharmonic_tension(self._law, r)
-            total += self.grid.coefficients_at(tension, harmonics) @ self._back[:, part].T
-        return np.asarray(total * self.allowed(harmonics))
-
-    def linear_at(self, harmonics: Ints) -> Floats:
-        """Omega of all modes, (N-1,): the same at every harmonic."""
-        return self.linear
+            total += there.from_points(self.grid.coefficients_at(tension, harmonics), part)
+        return np.asarray(total * there.mask)
 
     def rounding(self, cosines: Floats, kind: type) -> Floats:
-        """What rounding in numbers of a kind makes of the force of each mode, about; (N-1,).
+        """What rounding in numbers of a kind makes of the force, about; (H | 1, C).
 
         Every bond rounds at random at every point, and a force is a sum over bonds and points.
         """
-        law, (stretch, back) = self.chain.law(), self.stretches_of_half()
-        c, tension = cosines.astype(float), np.zeros(stretch.shape[1])
-        for part in self._portions(self.grid):
-            r = self.grid.values(c @ stretch[:, part])
-            tension[part] = np.mean(bonds.anharmonic_tension(law, r) ** 2, axis=1)
-        sizes = np.sqrt(back**2 @ tension)
+        law, variances = self.chain.law(), np.zeros(self.projection.points)
+        for part, r in self._stretches(cosines):
+            variances[part] = np.mean(bonds.anharmonic_tension(law, r) ** 2, axis=1)
+        sizes = self.projection.from_variances(variances)
         return np.asarray(np.finfo(kind).eps * self.grid.averaged_rounding * sizes)
 
-    def potential(self, Q: Floats) -> np.longdouble:
-        """The potential energy of mode coordinates (N-1,), by all bonds."""
-        each = bonds.potential(self._law, Q @ self._all_bonds)
-        return np.longdouble(each.sum())
-
-    def potential_slope(self, Q: Floats) -> Floats:
-        """Its gradient; shape (N-1,)."""
-        tension = bonds.tension(self._law, Q @ self._all_bonds)
-        return np.asarray(self._all_bonds @ tension)
+    def _stretches(self, cosines: Floats) -> Any:
+        """Portions of the bonds, and their stretches on the lattice in doubles, (b, points)."""
+        c = cosines.astype(float)
+        for part in self._portions(self.grid):
+            yield part, self.grid.values(self.projection.to_points(c, part))
 
     def energy(
         self, cosines: Floats, shifts: Floats, *, harmonic: bool
     ) -> tuple[np.longdouble, Slopes]:
-        """H, or the harmonic energy, at the angles zero, where the momenta vanish."""
+        """H, or the harmonic energy sum E_q, and its derivatives.
+
+        At the start where waves stand, as in the paper; where they travel, and are nowhere at rest,
+        the mean over the angles. On a torus H is the same everywhere, the harmonic energy is not.
+        """
+        if self.projection.standing:
+            start = self.harmonic_energy_at_start if harmonic else self.energy_at_start
+            return start(cosines)
+        mean = self.mean_harmonic_energy if harmonic else self.mean_energy
+        return mean(cosines, shifts)
+
+    def energy_at_start(self, cosines: Floats) -> tuple[np.longdouble, Slopes]:
+        """H at the angles zero, where standing waves have no momenta."""
         Q = cosines.sum(axis=0)
-        if harmonic:
-            energy, slope = (self.linear**2 * Q**2).sum() / 2, self.linear**2 * Q
-        else:
-            energy, slope = self.potential(Q), self.potential_slope(Q)
-        by_cosine = np.broadcast_to(slope, cosines.shape) * self.mask
-        return np.longdouble(energy), (by_cosine, np.zeros(len(shifts)))
+        return self.potential(Q), self._slopes_at_start(self.potential_slope(Q))
+
+    def harmonic_energy_at_start(self, cosines: Floats) -> tuple[np.longdouble, Slopes]:
+        """sum E_q at the angles zero, likewise."""
+        Q, squares = cosines.sum(axis=0), self.linear[0] ** 2
+        energy = np.longdouble((squares * Q**2).sum() / 2)
+        return energy, self._slopes_at_start(squares * Q)
+
+    def _slopes_at_start(self, slope: Floats) -> Slopes:
+        by_cosine = np.broadcast_to(slope, self.mask.shape) * self.mask
+        return by_cosine, np.zeros(len(self.seeds))
+
+    def potential(self, Q: Floats) -> np.longdouble:
+        """The potential energy of the modes of fixed ends, (N-1,), by all bonds."""
+        each = bonds.potential(self._law, Q @ self._every_bond)
+        return np.longdouble(each.sum())
+
+    def potential_slope(self, Q: Floats) -> Floats:
+        """Its gradient; shape (N-1,)."""
+        tension = bonds.tension(self._law, Q @ self._every_bond)
+        return np.asarray(self._every_bond @ tension)
+
+    @property
+    def _every_bond(self) -> Floats:
+        assert isinstance(self.projection, ModeProjection)
+        return np.asarray(self.projection.every_bond)
+
+    def mean_energy(self, cosines: Floats, shifts: Floats) -> tuple[np.longdouble, Slopes]:
+        """H averaged over the angles."""
+        kinetic = self._mean_kinetic_energy(cosines, shifts)
+        potential: Any = np.longdouble(0)
+        for part in self._portions(self.grid):
+            r = self.grid.values(self.projection.to_points(cosines, part))
+            means = self.grid.spectrum(bonds.potential(self._law, r))[:, 0]
+            potential += self.projection.images[part] @ means
+        _, (by_cosine, by_shift) = self.mean_harmonic_energy(cosines, shifts)
+        driven = 2 * self._weights[:, None] * self.force(cosines)
+        return np.longdouble(kinetic + potential), (by_cosine + driven, by_shift)
+
+    def _mean_kinetic_energy(self, cosines: Floats, shifts: Floats) -> np.longdouble:
+        momenta = self.rates(shifts)[:, None] * cosines
+        return np.longdouble((self._weights[:, None] * momenta**2).sum())
+
+    def mean_harmonic_energy(
+        self, cosines: Floats, shifts: Floats
+    ) -> tuple[np.longdouble, Slopes]:
+        """sum E_q averaged over the angles."""
+        rates = self.rates(shifts)
+        sizes = self._weights[:, None] * (rates[:, None] ** 2 + self.linear**2)
+        by_rate = 2 * self._weights * rates * (cosines**2).sum(axis=1)
+        energy = np.longdouble((sizes * cosines**2).sum())
+        return energy, (2 * sizes * cosines, by_rate @ self.harmonics)
 
     def seed_energy(
         self, place: int, cosines: Floats, shifts: Floats
     ) -> tuple[np.longdouble, Slopes]:
-        """E_q of a seed averaged over the angles."""
+        """E_q of a seed averaged over the angles, and its derivatives."""
         column = self.seed_columns[place]
         c, rates = cosines[:, column], self.rates(shifts)
-        weights = np.where((self.harmonics != 0).any(axis=1), 0.25, 0.5)
-        sizes = weights * (rates**2 + self.linear[column] ** 2)
+        weights = self._weights * self.projection.energy_share(self.seeds[place])
+        sizes = weights * (rates**2 + self.linear[:, column] ** 2)
         by_cosine = np.zeros(cosines.shape, dtype=cosines.dtype)
         by_cosine[:, column] = 2 * sizes * c
         by_shift = (2 * weights * rates * c**2) @ self.harmonics
         return np.longdouble((sizes * c**2).sum()), (by_cosine, by_shift)
 
     def slopes(self, cosines: Floats) -> Floats:
-        """V''(r) - 1 on the lattice, in doubles; shape (bonds, points)."""
-        law, (stretch, _) = self.chain.law(), self.stretches_of_half()
-        c, result = cosines.astype(float), np.empty((stretch.shape[1], self.grid.points))
-        for part in self._portions(self.grid):
-            r = self.grid.values(c @ stretch[:, part])
+        """V''(r) - 1 on the lattice, in doubles; shape (B, points)."""
+        law = self.chain.law()
+        result = np.empty((self.projection.points, self.grid.points))
+        for part, r in self._stretches(cosines):
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
 
@@ -272,75 +252,47 @@ class InvarianceEquation:
         return steps_by_slopes(self.grid, self._spectrum(slopes), most)
 
     def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
-        """Derivatives of the mean of weights times slopes, (H, N-1); weights (bonds, points)."""
-        there = self._stretch.astype(float)
-        r = self.grid.values(np.asarray(cosines.astype(float) @ there))
+        """Derivatives of the mean of weights times slopes, (H, C); weights (B, points).
+
+        By differences, good to some ten digits: for Newton's matrix.
+        """
+        r = self.grid.values(self.projection.to_points(cosines.astype(float)))
         bent = weights * curvature(self.chain.law(), r)
         spectrum = self.grid.spectrum(bent)[:, self.grid.entries(self.harmonics)]
-        return np.asarray((spectrum.T @ there.T) * self.mask)
+        return np.asarray(self.projection.transposed(spectrum.T) * self.mask)
 
     def force_change(self, slopes: Floats, change: Floats) -> Floats:
-        """The derivative of the force along a change of the coefficients, in doubles.
-
-        Shapes (H, N-1).
-        """
+        """The derivative of the force along a change of the coefficients, in doubles; (H, C)."""
         total = np.zeros(change.shape)
         for part in self._portions(self.grid):
-            there = self._stretch[:, part].astype(float)
-            back = self._back[:, part].T.astype(float)
-            d = self.grid.values(change @ there)
-            total += self.grid.coefficients(slopes[part] * d) @ back
+            d = self.grid.values(self.projection.to_points(change, part))
+            driven = self.grid.coefficients(slopes[part] * d)
+            total += self.projection.from_points(driven, part)
         return np.asarray(total * self.mask)
 
     def block(self, slopes: Floats, rows: Ints, columns: Ints) -> Floats:
         """The derivative of the force between chosen unknowns; shape (m, m).
 
-        rows, columns : of harmonic and mode. Of a unit of cos(nu'.theta) the coefficient at nu is
-        slope[nu - nu'] + slope[nu + nu'], half of it for nu = 0; of the modes q and q' a slope of
-        the bonds makes Omega_q Omega_q' times what it has of the modes |q - q'| and q + q'.
+        rows, columns : of harmonic and column. Of a unit of cos(nu'.theta) the coefficient at nu is
+        slope[nu - nu'] + slope[nu + nu'], half of it for nu = 0, coupled as the columns are.
         """
-        N, modes = self.chain.N, columns + 1
-        table = self._spectrum(slopes).T @ self._products_of_modes()
-        flat, width = table.ravel(), table.shape[1]
-        nu, linear = self.harmonics[rows], self.linear[columns].astype(float)
+        there = self.projection
+        table = there.coupling_table(self._spectrum(slopes))
+        nu, scale = self.harmonics[rows], there.scales(rows, columns)
         along = nu @ self.grid.generator
         matrix = np.empty((len(rows), len(rows)))
-        for a, mode in enumerate(modes):
-            apart, total = np.abs(mode - modes[a:]), mode + modes[a:]
-            nearer = np.minimum(total, 2 * N - total)
-            sign = np.where(total > N, -1.0, 1.0)
-            found = np.zeros(len(rows) - a)
-            for turned in (-along[a:], along[a:]):
-                place = self.grid.folded(along[a] + turned) * width
-                found += flat[place + apart] + sign * flat[place + nearer]
-            matrix[a, a:] = linear[a] * linear[a:] * found
-            matrix[a:, a] = matrix[a, a:]
+        for first in range(0, len(rows), ROWS):
+            own, rest = slice(first, first + ROWS), slice(first, None)
+            both = (along[own, None] - along[rest], along[own, None] + along[rest])
+            places = [self.grid.folded(turned) for turned in both]
+            found = there.between(table, places, columns[own, None], columns[rest])
+            matrix[own, rest] = scale[own, None] * scale[rest] * found
+            matrix[rest, own] = matrix[own, rest].T
         matrix[(nu == 0).all(axis=1)] /= 2
         return matrix
 
-    def _products_of_modes(self) -> Floats:
-        """cos(pi m (j + 1/2)/N) / N of half of the bonds with their images; (bonds, N + 1)."""
-        N, bonds_of_half = self.chain.N, np.arange(self._stretch.shape[1])
-        images = np.where(2 * bonds_of_half + 1 == N, 1, 2)
-        angles = np.outer(2 * bonds_of_half + 1, np.arange(N + 1)) % (4 * N)
-        cosines = np.cos(np.pi / (2 * N) * angles)
-        return np.asarray(cosines * images[:, None] / N)
-
-    def _between_modes(self, row: Floats) -> Floats:
-        """A slope of the bonds between all modes, (N-1, N-1), by what it has of the modes 0 .. N.
-
-        Windows of rows of numbers: of |q - q'|, and of q + q' beyond N, where the sign turns.
-        """
-        count, linear = self.chain.N - 1, self.linear.astype(float)
-        apart = np.concatenate([row[count - 1 : 0 : -1], row[:count]])
-        total = np.concatenate([row[2:], -row[count:1:-1]])
-        both = sliding_window_view(apart, count)[::-1] + sliding_window_view(total, count)
-        both *= linear
-        both *= linear[:, None]
-        return np.asarray(both)
-
     def _spectrum(self, slopes: Floats) -> Floats:
-        """Coefficients of the slopes of all bonds, by place; shape (bonds, points)."""
+        """Coefficients of the slopes of all points, by place; shape (B, points)."""
         spectrum = np.empty_like(slopes)
         for part in self._portions(self.grid):
             spectrum[part] = self.grid.spectrum(slopes[part])
@@ -349,21 +301,18 @@ class InvarianceEquation:
     def sparse_rows(self, slopes: Floats, rows: Ints, columns: Ints) -> Any:
         """The derivative of the force on chosen unknowns, by the largest harmonics of the slopes.
 
-        rows, columns : of harmonic and mode. A sparse matrix (m, unknowns), those in the order of
+        rows, columns : of harmonic and column. A sparse matrix (m, unknowns), those in the order of
         the mask.
         """
         spectrum = self._spectrum(slopes)
         kappas = largest_slopes(self.grid, spectrum)
-        products = self._products_of_modes()
-        weights = halves_of_pairs(self.harmonics)
+        there, weights = self.projection, self._weights
 
-        def coupled(kappa: Ints) -> tuple[Floats, Ints, Ints]:
+        def coupled(kappa: Ints, least: float) -> tuple[Floats, Ints, Ints]:
             slope = spectrum[:, self.grid.entries(kappa)]
-            coupling = self._between_modes(slope @ products)
-            sizes = np.abs(coupling)
-            coupling[sizes <= LEAST_COUPLING * sizes.max()] = 0
             at, to = shifted(self.harmonics, rows, kappa)
+            coupling = there.couplings(slope, rows[at], columns[at], to, least)
             weight = weights[to] / weights[rows[at]]
-            return weight[:, None] * coupling[columns[at]], at, to
+            return weight[:, None] * coupling, at, to
 
         return sparse_rows(self.mask, kappas, coupled, len(rows))

@@ -19,9 +19,9 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain.chain import Chain
+from symfpu.chain.projections.projection import Projection
 from symfpu.chain.tension_terms import Terms, terms
-from symfpu.refinement.equation import Ints
+from symfpu.refinement.lattice import Ints
 
 Integers = NDArray[np.object_]
 
@@ -103,38 +103,35 @@ class Series(NamedTuple):
 class KroneckerForce:
     """The anharmonic force of a chain on functions in a box, with so many bits after the point.
 
-    reach : no stretch of a bond is larger.
+    projection : of the chain, at any harmonics. reach : no stretch of a bond is larger.
     """
 
-    def __init__(self, chain: Chain, box: Box, bits: int, reach: Any) -> None:
-        self.chain, self.box, self.bits = chain, box, bits
+    def __init__(self, projection: Projection, box: Box, bits: int, reach: Any) -> None:
+        self.projection, self.chain = projection, projection.chain
+        self.box, self.bits = box, bits
         _, self._scale = math.frexp(float(reach))  # stretches in units of 2^scale
         self.terms = self._terms(reach)
         self.highest = max(self.terms.couplings, default=1)
-        self._set_bonds()
+        self._set_rows()
 
     def _terms(self, reach: Any) -> Terms:
         """Of what is summed: V'(r) - r."""
         return terms(self.chain, self.bits, reach)
 
-    def _set_bonds(self) -> None:
-        """Stretches of half of the bonds by a unit of each mode, and the way back from all."""
-        N = self.chain.N
-        bonds = range((N + 1) // 2)
+    def _set_rows(self) -> None:
+        """Stretches of the points by a unit of each kind of coefficient, and squares of Omega."""
         with mpmath.workprec(self.bits + SPARE_BITS):
-            root = mpmath.sqrt(mpmath.mpf(2) / N)
-            linear = [self.chain.linear_frequency(q) for q in range(1, N)]
-            rows = []
-            for q, Omega in enumerate(linear, 1):
-                angles = [mpmath.mpf(q * (2 * j + 1) % (4 * N)) / (2 * N) for j in bonds]
-                rows.append([self.fixed(root * Omega * mpmath.cospi(x)) for x in angles])
-            self.squares: Integers = np.array(
-                [self.fixed(Omega**2) for Omega in linear], dtype=object
-            )
-        stretch = np.array(rows, dtype=object)
-        images = np.array([1 if 2 * j + 1 == N else 2 for j in bonds], dtype=object)
-        self._stretch = flint.fmpz_mat(rows)
-        self._back: Integers = (stretch * images).T
+            linear, rows = self.projection.exact_rows()
+            fixed = [[self.fixed(x) for x in row] for row in rows]
+            squares = [self.fixed(Omega**2) for Omega in linear]
+        self._rows: Integers = np.array(fixed, dtype=object)
+        self._squares: Integers = np.array(squares, dtype=object)
+        images = self.projection.images.astype(int).tolist()
+        self._images: Integers = np.array(images, dtype=object)
+
+    def squares(self, harmonics: Ints) -> Integers:
+        """Omega^2 of coefficients at harmonics (M, s); (M | 1, C)."""
+        return np.asarray(self._squares[self.projection.at(harmonics).entries])
 
     def fixed(self, value: Any) -> int:
         """A number of mpmath or a fraction as an integer, rounded to nearest."""
@@ -143,45 +140,59 @@ class KroneckerForce:
             return int(doubled + 1) // 2
         return int(mpmath.nint(mpmath.ldexp(value, self.bits)))
 
-    def stretches(self, c: Integers) -> Integers:
-        """Coefficients (H, bonds) of the stretches of half of the bonds, of those (H, N-1)."""
-        return self._times(c, self._stretch)
+    def stretches(self, harmonics: Ints, c: Integers) -> Integers:
+        """Coefficients (H, B) of the stretches of the points, of those (H, C) at harmonics."""
+        return self._times(c, self._rows[self.projection.at(harmonics).entries])
 
-    def _times(self, left: Integers, right: Any) -> Integers:
-        product = flint.fmpz_mat(left.tolist()) * right
-        table = np.array(product.entries(), dtype=object)
-        return np.asarray(table.reshape(len(left), -1) >> self.bits)
+    def driven(self, harmonics: Ints, tension: Integers) -> Integers:
+        """What tensions of the points, (M, B) at harmonics, drive; (M, C)."""
+        return self._times(tension, np.swapaxes(self._back(harmonics), 1, 2))
+
+    def _back(self, harmonics: Ints) -> Integers:
+        rows = self._rows[self.projection.at(harmonics).entries]
+        return np.asarray(rows * self._images)
+
+    def _times(self, left: Integers, tables: Integers) -> Integers:
+        """Rows (H, K) times tables (H | 1, K, L), each with its own or all with the one."""
+        if len(tables) > 1:
+            return np.asarray((left[:, :, None] * tables).sum(axis=1) >> self.bits)
+        product = flint.fmpz_mat(left.tolist()) * flint.fmpz_mat(tables[0].tolist())
+        found = np.array(product.entries(), dtype=object)
+        return np.asarray(found.reshape(len(left), -1) >> self.bits)
 
     def force(
         self, harmonics: Ints, c: Integers, wanted: Ints
     ) -> tuple[Integers, Integers]:
-        """Coefficients (M, N-1) of the force at wanted harmonics, of those (H, N-1) of a torus.
+        """Coefficients (M, C) of the force at wanted harmonics, of those (H, C) of a torus.
 
         They hold where the selection rules let a mode carry a harmonic; the others mean nothing.
 
-        The second result, of `whole` boxes: above what the force
-        of each mode is off by, with harmonics that are not wanted left out as if they were none,
-        (N-1,).
+        The second result, of `whole` boxes: above what the force of each column is off by, with
+        harmonics that are not wanted left out as if they were none, (C,).
         """
         rows, to = self.box.rows(harmonics), self.box.rows(wanted)
-        stretches = self.stretches(c)
+        stretches = self.stretches(harmonics, c)
         tension = np.zeros((len(wanted), stretches.shape[1]), dtype=object)
         errors = np.zeros(stretches.shape[1], dtype=object)
+        rounding = len(c) + int(
+            (abs(c).sum() >> (self.bits + 1)) + 1
+        )  # of S c, and S's own
         for j, r in enumerate(stretches.T):
-            found = self._sum_of_powers(rows, r)
+            found = self._sum_of_powers(rows, r, rounding)
             tension[:, j], errors[j] = found.values[to], found.error
         still = to == 0
         tension[still] = tension[still] // 2
-        back = flint.fmpz_mat(self._back.tolist())
-        off = (abs(self._back).T @ errors) >> self.bits
-        return self._times(tension, back), off + len(wanted)
+        back = abs(self._back(wanted)).max(axis=0) + self._images
+        off = (back @ errors + abs(tension).sum(axis=0) @ self._images) >> self.bits
+        return self.driven(wanted, tension), off + len(wanted) + 1
 
-    def _sum_of_powers(self, rows: Ints, r: Integers) -> Series:
+    def _sum_of_powers(self, rows: Ints, r: Integers, error: int) -> Series:
         """The terms of one bond, V'(r) - r, by powers in blocks, blocks by Horner's rule.
 
+        error : of r, at most.
         About twice the root of the degree as many products (Paterson and Stockmeyer).
         """
-        powers = self._powers(rows, r)
+        powers = self._powers(rows, r, error)
         width, last = len(powers) - 1, self.highest + 1
         if self.highest <= width:
             total = self._block(powers, range(last))
@@ -194,13 +205,14 @@ class KroneckerForce:
         rest = self.fixed(self.terms.rest) + 1
         return total._replace(error=total.error + rest)
 
-    def _powers(self, rows: Ints, r: Integers) -> list[Series]:
+    def _powers(self, rows: Ints, r: Integers, error: int) -> list[Series]:
         """1, g, g^2, .. of g = r / 2^scale, as many as a block has."""
         g = np.zeros(len(self.box.harmonics), dtype=object)
         g[rows] = _shifted(np.where(rows == 0, 2 * r, r), -self._scale)
         one = np.zeros(len(g), dtype=object)
         one[0] = 2 << self.bits
-        first = Series(g, int(abs(g).sum()), len(r) + 1)
+        off = int(_shifted(np.array([error], dtype=object), -self._scale)[0]) + 1
+        first = Series(g, int(abs(g).sum()), off + len(r) + 1)
         width = min(self.highest, max(3, math.isqrt(self.highest)))
         powers = [Series(one, 1 << self.bits), first]
         while len(powers) <= width:

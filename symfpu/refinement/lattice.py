@@ -1,6 +1,6 @@
 """Even functions of several angles on a line of points, by transforms of one variable.
 
-A rank-1 lattice; `symfpu.refinement.invariance` and `symfpu.refinement.waves` multiply on it.
+A rank-1 lattice; `symfpu.refinement.invariance` multiplies on it.
 """
 
 from __future__ import annotations

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import Floats, Ints
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
 # divisors up to so many times what the coupling adds to them belong to the block
@@ -29,7 +30,7 @@ class LinearSystem:
 
     def __init__(
         self,
-        equation: TorusEquation,
+        equation: InvarianceEquation,
         conditions: Sequence[Condition],
         cosines: Floats,
         shifts: Floats,
@@ -163,7 +164,7 @@ class Preconditioner:
         return result
 
 
-def _weights(equation: TorusEquation, divisors: Floats) -> Floats:
+def _weights(equation: InvarianceEquation, divisors: Floats) -> Floats:
     """Of all coefficients (H, C): the divisor over Omega^2, infinite of those not unknown."""
     linear = equation.linear.astype(float)
     weights = np.full(equation.mask.shape, np.inf)
@@ -178,7 +179,7 @@ def _count(weights: Floats, slopes: Floats, total: int) -> int:
     return min(max(int(resonant.sum()), SMALLEST_BLOCK), LARGEST_BLOCK, total)
 
 
-def block_size(equation: TorusEquation, divisors: Floats, slopes: Floats) -> int:
+def block_size(equation: InvarianceEquation, divisors: Floats, slopes: Floats) -> int:
     """How many unknowns a preconditioner solves for directly, by divisors (H, C) and slopes."""
     return _count(_weights(equation, divisors), slopes, int(equation.mask.sum()))
 

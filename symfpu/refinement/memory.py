@@ -14,13 +14,12 @@ import psutil
 from symfpu.chain.chain import Chain
 from symfpu.errors import TorusTooLarge
 from symfpu.refinement.couplings import MOST_SLOPES
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
-from symfpu.refinement.invariance import PORTION
-from symfpu.refinement.lattice import Lattice
+from symfpu.refinement.invariance import PORTION, InvarianceEquation
+from symfpu.refinement.lattice import Floats, Ints, Lattice
 from symfpu.refinement.linear_system import SMALLEST_BLOCK, block_size
 from symfpu.refinement.newton import KRYLOV
-from symfpu.tori.quasiperiodic import GRID_POINTS, points_of_each_angle
-from symfpu.tori.ring_torus import CHUNK as ANGLES_OF_A_RING
+from symfpu.tori.columns import CHUNK
+from symfpu.tori.quasiperiodic import GRID_POINTS, angles_at_once, points_of_each_angle
 
 DOUBLE = 8
 # tables in long doubles and doubles that the search keeps, and those of a step beside them
@@ -30,7 +29,7 @@ MODES_BYTES = 72  # of two modes, in the tables of bonds and modes and of coupli
 HARMONIC_BYTES = 600  # of the numbers of a harmonic in Python
 COUPLED_MODES = 5  # that a harmonic of the slopes couples a mode to, at most about
 COUPLING_BYTES = 84  # of one in all its forms, of which half go on
-EXPONENTIAL = 48  # bytes of one, with what it is made of
+EXPONENTIAL = 72  # bytes of one, with what it is made of
 # of a mode at one angle, where the residual is taken: on a ring, and with fixed ends by a Fourier
 # transform of coordinates and what is linear in them
 BYTES_AT_AN_ANGLE, TRANSFORMED_BYTES = 24, 72
@@ -85,7 +84,8 @@ class Sizes:
         vectors = (KRYLOV + 6) * DOUBLE * self.unknowns
         residual = TRANSFORMED_BYTES * self.angles * self.columns
         if self.ring:
-            residual = EXPONENTIAL * self.angles * self.harmonics
+            at_once = min(self.angles, max(1, CHUNK // max(1, self.harmonics)))
+            residual = EXPONENTIAL * at_once * self.harmonics
             residual += BYTES_AT_AN_ANGLE * self.angles * self.columns
         parts = (
             2 * block + coupled + spectra,
@@ -116,7 +116,7 @@ def least_sizes(
 
 
 def sizes_of(
-    chain: Chain, equation: TorusEquation, cosines: Floats, shifts: Floats
+    chain: Chain, equation: InvarianceEquation, cosines: Floats, shifts: Floats
 ) -> Sizes:
     """Of the first step from an iterate."""
     count, columns = equation.mask.shape
@@ -135,9 +135,8 @@ def sizes_of(
 
 def _angles(chain: Chain, s: int) -> int:
     """At which the residual of a torus of s angles is taken, as many as are held at once."""
-    if chain.periodic:
-        return ANGLES_OF_A_RING
-    return int(points_of_each_angle(GRID_POINTS, s) ** s)
+    number = points_of_each_angle(GRID_POINTS, s) ** s
+    return int(min(number, angles_at_once(chain)) if chain.periodic else number)
 
 
 def require_memory(sizes: Sizes, chain: Chain) -> None:

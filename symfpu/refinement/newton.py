@@ -17,7 +17,8 @@ import numpy as np
 
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.equation import Floats, TorusEquation
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import Floats
 from symfpu.refinement.linear_system import LinearSystem, Preconditioner
 
 KRYLOV, RESTARTS = 60, 4
@@ -84,7 +85,7 @@ class Iterate:
 
 
 @np.errstate(divide="ignore", invalid="ignore")
-def force_precision(equation: TorusEquation, cosines: Floats, shifts: Floats) -> type:
+def force_precision(equation: InvarianceEquation, cosines: Floats, shifts: Floats) -> type:
     """Doubles for the force where what they round shows in no coefficient, else long doubles.
 
     An error of the force is divided by the divisor. At small amplitudes those of the seeds, their
@@ -100,7 +101,7 @@ def force_precision(equation: TorusEquation, cosines: Floats, shifts: Floats) ->
 
 
 def _imbalance(
-    equation: TorusEquation, cosines: Floats, shifts: Floats, precision: type
+    equation: InvarianceEquation, cosines: Floats, shifts: Floats, precision: type
 ) -> tuple[Floats, float]:
     """Of the equations of all unknowns, (U,), and the same relative to the largest acceleration.
 
@@ -116,7 +117,7 @@ def _imbalance(
 # iterates that run away are refused by their size
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def newton(
-    equation: TorusEquation,
+    equation: InvarianceEquation,
     conditions: Sequence[Condition],
     cosines: Floats,
     shifts: Floats,
@@ -180,7 +181,7 @@ def _unsolved(products: int, left: float) -> str:
     return f"{products} products leave {left:.2g} of the right-hand side of Newton's method"
 
 
-def _sizes(equation: TorusEquation, cosines: Floats) -> dict[str, float]:
+def _sizes(equation: InvarianceEquation, cosines: Floats) -> dict[str, float]:
     """What must not run away or vanish: the largest coefficient, and every seed's amplitude."""
     amplitudes = np.abs(cosines[equation.seed_rows, equation.seed_columns])
     by_seed = zip(equation.seeds, amplitudes, strict=True)
@@ -262,21 +263,26 @@ def _solution(
 
 
 def responses(
-    equation: TorusEquation,
+    equation: InvarianceEquation,
     conditions: Sequence[Condition],
     cosines: Floats,
     shifts: Floats,
+    *,
+    first: int | None = None,
 ) -> tuple[Floats, Floats]:
     """Derivatives of a torus by the values of its conditions: of cosines, and of shifts.
 
     Shapes (s, H, N-1) and (s, s), the condition first: Newton's matrix solved for each of them,
     with corrections until they no longer shrink. Raises LinAlgError where it is singular.
+
+    first : how many of the conditions are asked for, from the first on; default all.
     """
     system = LinearSystem(equation, conditions, cosines, shifts)
     preconditioner = Preconditioner(system)
     count, s = int(system.mask.sum()), len(shifts)
-    by_cosine, by_shift = np.zeros((s, *system.mask.shape)), np.zeros((s, s))
-    for place in range(s):
+    asked = s if first is None else first
+    by_cosine, by_shift = np.zeros((asked, *system.mask.shape)), np.zeros((asked, s))
+    for place in range(asked):
         right = np.zeros(count + s)
         right[count + place] = 1.0
         change = _corrected(system, preconditioner, right)
@@ -309,7 +315,7 @@ class Correction:
 
     def __init__(
         self,
-        equation: TorusEquation,
+        equation: InvarianceEquation,
         conditions: Sequence[Condition],
         cosines: Floats,
         shifts: Floats,

@@ -5,37 +5,37 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from numbers import Real
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 
 from symfpu.chain.chain import Chain
-from symfpu.errors import InputError, SymfpuError
+from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress, unheard
-from symfpu.numbers.typed import integer
+from symfpu.numbers.typed import integer, part
 from symfpu.refinement.conditions import Condition, seed_amplitudes
-from symfpu.refinement.equation import Floats, Ints
 from symfpu.refinement.guesses import require_moderate, require_torus, shifts_of
 from symfpu.refinement.harmonics import MOST_HARMONICS, known_rows
 from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.newton import Iterate, NewtonStep
 from symfpu.refinement.resonances import NearResonance, near_resonances
-from symfpu.refinement.ring_tori import (
-    RefinedRingTorus,
-    driven_in_resonance,
-    refined_waves,
-)
-from symfpu.refinement.search import Search, Unknowns
-from symfpu.refinement.waves import WaveEquation
+from symfpu.refinement.search import Search
+from symfpu.refinement.umklapp import driven_in_resonance
+from symfpu.tori.best_order import best_order
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
-from symfpu.tori.travelling import wave_coefficients
+from symfpu.tori.torus import QTorus
 
 # residual of the equations of motion, relative to the largest acceleration, that ends the search
 # for harmonics
 TOLERANCE = 1e-13
 USEFUL = 1e-9  # residual of a torus up to which normal modes and others take it
+NEARER = "start from a torus nearer to it, such as a member of a family from less energy"
+SOLVED = 1e-15  # residual of an iterate that solves the equations: it is one of many
+DEGENERATE = (
+    "the frequencies may be those of many amplitudes, as of mode N/2 in alpha: "
+    "give the amplitudes, refine_at_amplitudes"
+)
 ENDED_EARLY = "Newton's method ended early"  # how the warning of such a torus begins
 
 
@@ -43,12 +43,15 @@ ENDED_EARLY = "Newton's method ended early"  # how the warning of such a torus b
 class RefinedTorus(QuasiPeriodic):
     """A torus found by Newton's method, Q_q(t) = sum c_q[nu] cos(nu.(omega t + phi)).
 
+    Of fixed ends, or of travelling waves of a ring.
+
     Made by `refine` and its sisters; dimensionless, phases in radians. Ours: the paper has series
     alone.
 
     chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
     amplitudes : by seed, of cos(theta_q) in Q_q. phases : by seed.
-    harmonics : the nu, shape (H, s). cosines : c_q[nu] in doubles, shape (H, N-1).
+    harmonics : the nu, shape (H, s). cosines : c_q[nu] in doubles, shape (H, N-1), on a ring
+        (H, 1) and `travels`.
     steps : of Newton's method with the final harmonics.
     near_resonances : the smallest divisors (nu.omega)^2 - Omega_q^2, with the coefficients under
         them.
@@ -72,6 +75,7 @@ class RefinedTorus(QuasiPeriodic):
     near_resonances: tuple[NearResonance, ...] = field(repr=False)
     warnings: tuple[str, ...] = ()
     digits: int | None = None
+    travels: bool = False
 
     @property
     def verdict(self) -> str:
@@ -100,106 +104,105 @@ class NoTorus(SymfpuError):
 
     Where it fails with a residual of 1e-9 or less left, they give that torus with a warning.
 
-    iterate : the best one, a RefinedTorus or RefinedRingTorus, or where digits were asked for the
+    iterate : the best one, a RefinedTorus, or where digits were asked for the
         torus from which they were tried; residual : what it leaves of the
         equations of motion, relative to the largest acceleration, dimensionless; reason : why it
         ended. Ours.
     """
 
     def __init__(
-        self, reason: str, iterate: QuasiPeriodic | RefinedRingTorus, residual: float
+        self,
+        reason: str,
+        iterate: QuasiPeriodic,
+        residual: float,
+        advice: str = NEARER,
     ) -> None:
         self.reason, self.iterate, self.residual = reason, iterate, residual
         left = f"the best iterate leaves {residual:.2g} of the largest acceleration"
-        advice = "start from a torus nearer to it, such as one of less energy"
         super().__init__(
             f"no torus of the seeds {iterate.seeds}: {reason}; {left}; {advice}"
         )
 
 
-@overload
-def refined_torus(
-    torus: RingTorus,
-    conditions: Sequence[Condition],
-    *,
-    tolerance: float = ...,
-    most_harmonics: int = ...,
-    progress: Progress | None = ...,
-) -> RefinedRingTorus: ...
-@overload
 def refined_torus(
     torus: QuasiPeriodic,
-    conditions: Sequence[Condition],
-    *,
-    tolerance: float = ...,
-    most_harmonics: int = ...,
-    progress: Progress | None = ...,
-) -> RefinedTorus: ...
-def refined_torus(
-    torus: QuasiPeriodic | RingTorus,
     conditions: Sequence[Condition],
     *,
     tolerance: float = TOLERANCE,
     most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
-) -> RefinedTorus | RefinedRingTorus:
+) -> RefinedTorus:
     """The torus near a guess that meets as many conditions as it has angles.
 
     With as many harmonics as the tolerance needs.
     """
     require_torus(torus)
-    if not isinstance(tolerance, Real) or not 0 < tolerance < 1:
-        raise InputError(
-            "tolerance", tolerance, "a number between 0 and 1", "take 1e-13 or more"
-        )
     most = integer(most_harmonics, "most_harmonics", len(torus.seeds))
-    kind = WAVES if isinstance(torus, RingTorus) else COSINES
-    guess = kind.coefficients(torus)
+    torus, advice = _best_start(torus)
+    guess = _coefficients(torus)
     require_moderate(guess[1])
     search = Search(
-        kind,
+        _result,
         torus,
         conditions,
-        tolerance=tolerance,
+        tolerance=part(tolerance, "tolerance"),
         most=most,
         tell=progress or unheard,
     )
     solved = search(known_rows(*guess), shifts_of(torus))
-    found: RefinedTorus | RefinedRingTorus = solved.torus
+    found: RefinedTorus = solved.torus
     if solved.failure:
         settled = found if solved.found.settled else None
-        return _ended_early(_because(solved.failure, found), settled, solved.reached, found)
+        reason = _because(solved.failure, found)
+        return _ended_early(reason, settled, solved.reached, found, advice)
     if solved.doubt:
         return replace(found, warnings=(_because(solved.doubt, found),))
     return found
 
 
-def _ended_early(reason: str, settled: Any, reached: Any, last: Any) -> Any:
+def _best_start(torus: Any) -> tuple[Any, str]:
+    """The torus of a series cut where its residual is least, and what would help if that fails."""
+    if not isinstance(torus, QTorus):
+        return torus, NEARER
+    best = best_order(torus)
+    cut = torus.cut_at(best)
+    start = cut if best else torus  # the linear modes alone lead nowhere
+    left = f"its series leaves {cut.residual():.2g} at its best order {best}"
+    return start, f"{left}: follow the family of tori from less energy"
+
+
+def _ended_early(
+    reason: str, settled: Any, reached: Any, last: Any, advice: str
+) -> RefinedTorus:
     """The best torus there is where Newton's method failed, with a warning; else NoTorus.
 
     settled : the last iterate, if nothing but rounding was left to be gained. reached : the torus
     of fewer harmonics, on which the method converged.
     """
     tori = [torus for torus in (settled, reached) if torus is not None]
+    best: RefinedTorus | None
     best = min(tori, key=lambda torus: torus.residual(), default=None)
     if best is None or not best.residual() <= USEFUL:
-        raise NoTorus(reason, last, last.residual())
+        left = last.residual()
+        raise NoTorus(reason, last, left, DEGENERATE if left <= SOLVED else advice)
     left = f"the residual is {best.residual():.2g} with {len(best.harmonics)} harmonics"
-    return replace(best, warnings=(f"{ENDED_EARLY}: {reason}; {left}",))
+    warnings = (f"{ENDED_EARLY}: {reason}; {left}",)
+    ended: RefinedTorus = replace(best, warnings=warnings)
+    return ended
 
 
-def ended_early(torus: RefinedTorus | RefinedRingTorus) -> bool:
+def ended_early(torus: RefinedTorus) -> bool:
     """Whether it is what Newton's method had reached when it failed."""
     return any(warning.startswith(ENDED_EARLY) for warning in torus.warnings)
 
 
-def _because(reason: str, torus: RefinedTorus | RefinedRingTorus) -> str:
+def _because(reason: str, torus: RefinedTorus) -> str:
     """With the resonance of a ring that may be the cause."""
-    cause = driven_in_resonance(torus) if isinstance(torus, RefinedRingTorus) else ""
+    cause = driven_in_resonance(torus, torus.near_resonances) if torus.travels else ""
     return f"{reason}; {cause}" if cause else reason
 
 
-def _cosines(torus: QuasiPeriodic) -> tuple[Ints, Floats]:
+def _coefficients(torus: QuasiPeriodic) -> tuple[Ints, Floats]:
     with np.errstate(over="ignore"):
         return torus.harmonics, torus.cosines.astype(float)
 
@@ -210,20 +213,18 @@ def _result(
     found: Iterate,
     frequencies: tuple[Fraction, ...],
 ) -> RefinedTorus:
+    """The torus of an iterate, without harmonics of a ring in which nothing moves."""
     amplitudes = map(float, seed_amplitudes(equation, found.cosines))
-    modes = np.array(torus.chain.mode_numbers)
+    kept = equation.mask[:, 0] if torus.travels else slice(None)
     return RefinedTorus(
         chain=torus.chain,
         seeds=torus.seeds,
         frequencies=frequencies,
         amplitudes=dict(zip(torus.seeds, amplitudes, strict=True)),
         phases={q: float(phi) for q, phi in torus.phases.items()},
-        harmonics=equation.harmonics,
-        cosines=found.cosines.astype(float),
+        harmonics=equation.harmonics[kept],
+        cosines=found.cosines[kept].astype(float),
         steps=found.steps,
-        near_resonances=near_resonances(equation, found.cosines, found.shifts, modes),
+        near_resonances=near_resonances(equation, found.cosines, found.shifts),
+        travels=torus.travels,
     )
-
-
-COSINES = Unknowns(_cosines, lambda chain: (chain.N + 1) // 2, InvarianceEquation, _result)
-WAVES = Unknowns(wave_coefficients, lambda chain: 1, WaveEquation, refined_waves)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import Floats
 
 SHOWN_DIVISORS = 10
 
@@ -30,16 +31,13 @@ class NearResonance:
 
 
 def near_resonances(
-    equation: TorusEquation, cosines: Floats, shifts: Floats, modes: Ints
+    equation: InvarianceEquation, cosines: Floats, shifts: Floats
 ) -> tuple[NearResonance, ...]:
-    """The smallest divisors but those of the seeds, smallest first.
-
-    modes : of every coefficient, broadcast with (H, C).
-    """
+    """The smallest divisors but those of the seeds, smallest first."""
     every = equation.divisors(shifts).astype(float)
     divisors = np.where(equation.mask, every, np.inf)
     divisors[equation.seed_rows, equation.seed_columns] = np.inf
-    numbers = np.broadcast_to(modes, divisors.shape)
+    numbers = np.broadcast_to(equation.projection.modes, divisors.shape)
     order = np.argsort(np.abs(divisors), axis=None)[:SHOWN_DIVISORS]
     nearest = []
     for r, c in zip(*np.unravel_index(order, divisors.shape), strict=True):

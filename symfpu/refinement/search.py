@@ -9,19 +9,21 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any
 
 import mpmath
 import numpy as np
 
 from symfpu.chain.chain import Chain
+from symfpu.chain.projections.by_ends import count_points
 from symfpu.errors import TorusTooLarge
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.numbers.arithmetic import mpf, text
+from symfpu.numbers.long_doubles import DIGITS, rational
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
 from symfpu.refinement.harmonics import chosen_harmonics, known_rows
-from symfpu.refinement.invariance import DIGITS, rational
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.memory import least_sizes, require_memory, sizes_of
 from symfpu.refinement.newton import SETTLED, Aim, Iterate, newton
 from symfpu.refinement.widening import (
@@ -48,20 +50,6 @@ ROUGH_KRYLOV, ROUGH, OF_A_GUESS = 1e-7, 1e-3, 1e-3
 NO_GAIN, ALL_THAT_FIT = "more harmonics change nothing and", "as many harmonics as fit"
 
 
-class Unknowns(NamedTuple):
-    """What the tori of one kind of ends differ in.
-
-    coefficients : of a torus, harmonics (H, s) and coefficients (H, C) in doubles. functions : of
-    the angles that a lattice holds. equation : of chain, seeds, harmonics and what is told apart.
-    result : of torus, equation, iterate and frequencies.
-    """
-
-    coefficients: Callable[[Any], tuple[Ints, Floats]]
-    functions: Callable[[Chain], int]
-    equation: Callable[[Chain, Sequence[int], Ints, Ints | None], TorusEquation]
-    result: Callable[..., Any]
-
-
 @dataclass(frozen=True, eq=False)
 class Solved:
     """The equations of some harmonics, solved.
@@ -71,7 +59,7 @@ class Solved:
     none. reached : the torus of fewer harmonics, if there is one.
     """
 
-    equation: TorusEquation
+    equation: InvarianceEquation
     found: Iterate
     torus: Any
     residual: float
@@ -84,11 +72,14 @@ class Solved:
 
 
 class Search:
-    """What a torus of one guess, its conditions and its tolerance is searched with."""
+    """What a torus of one guess, its conditions and its tolerance is searched with.
+
+    result : makes the torus of an iterate, from guess, equation, iterate and frequencies.
+    """
 
     def __init__(
         self,
-        kind: Unknowns,
+        result: Callable[..., Any],
         torus: Any,
         conditions: Sequence[Condition],
         *,
@@ -96,9 +87,9 @@ class Search:
         most: int,
         tell: Progress,
     ) -> None:
-        self.kind, self.torus, self.conditions = kind, torus, conditions
+        self.result, self.torus, self.conditions = result, torus, conditions
         self.tolerance, self.most, self.tell = tolerance, most, tell
-        self.functions = kind.functions(torus.chain)
+        self.functions = count_points(torus.chain)
 
     def __call__(self, known: dict[tuple[int, ...], Floats], shifts: Floats) -> Solved:
         """The torus near known coefficients by harmonic, and shifts (s,) of its frequencies."""
@@ -190,7 +181,7 @@ class Search:
             chain, choice.cosines.shape[1], self.functions, harmonics, choice.apart
         )
         require_memory(least, chain)
-        equation = self.kind.equation(chain, self.torus.seeds, harmonics, choice.apart)
+        equation = InvarianceEquation(chain, self.torus.seeds, harmonics, choice.apart)
         self.tell(f"{len(harmonics)} harmonics, {equation.points} points", NO_FRACTION)
         start = np.where(equation.mask, choice.cosines, 0)
         sizes = sizes_of(chain, equation, start, shifts)
@@ -201,13 +192,17 @@ class Search:
         return self._judged(equation, self._newton(equation, start, shifts, aim))
 
     def _newton(
-        self, equation: TorusEquation, cosines: Floats, shifts: Floats, aim: Aim = SETTLED
+        self,
+        equation: InvarianceEquation,
+        cosines: Floats,
+        shifts: Floats,
+        aim: Aim = SETTLED,
     ) -> Iterate:
         return newton(equation, self.conditions, cosines, shifts, self.tell, aim=aim)
 
-    def _judged(self, equation: TorusEquation, found: Iterate) -> Solved:
+    def _judged(self, equation: InvarianceEquation, found: Iterate) -> Solved:
         frequencies = _frequencies(self.torus.chain, self.torus.seeds, found.shifts)
-        torus = self.kind.result(self.torus, equation, found, frequencies)
+        torus = self.result(self.torus, equation, found, frequencies)
         residual = float(torus.residual())
         if not found.failure:
             self.tell(f"residual {residual:.1e} between the grid points", NO_FRACTION)

@@ -11,16 +11,17 @@ from fractions import Fraction
 
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
+from symfpu.numbers.long_doubles import long
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 from symfpu.refinement.conditions import Start
 from symfpu.refinement.guesses import numbers_by_seed
 from symfpu.refinement.harmonics import MOST_HARMONICS
-from symfpu.refinement.invariance import long
 from symfpu.refinement.refined_torus import TOLERANCE, RefinedTorus, refined_torus
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
-from symfpu.tori.ring_torus import RingTorus
+from symfpu.tori.quasiperiodic import QuasiPeriodic, require_fixed_solution
 
 
+@public
 def refine_at_start(
     torus: QuasiPeriodic,
     coordinates: Mapping[int, Number],
@@ -44,15 +45,11 @@ def refine_at_start(
     >>> from symfpu import Chain, refine_at_start, torus_at_amplitudes
     >>> amplitudes, phases = {1: "0.4", 2: "0.02"}, {2: "3.14159265358979324"}
     >>> guess = torus_at_amplitudes(Chain(8, alpha="0.3"), amplitudes, order=4, phases=phases)
-    >>> refine_at_start(guess, {1: "0.4", 2: 0}).positions(0.0)[:3].round(6) + 0.0
+    >>> refine_at_start(guess, {1: "0.4", 2: 0}).Q(0.0)[:3].round(6) + 0.0
     array([ 0.4     ,  0.      , -0.000641])
     """
-    if isinstance(torus, RingTorus):
-        allowed = "a torus of a chain with fixed ends"
-        advice = "on a ring give amplitudes to refine_at_amplitudes"
-        ring = f"{type(torus).__name__} of {torus.chain!r}"
-        raise InputError("torus", ring, allowed, advice)
-    require_solution(torus, "torus")
+    ring = "on a ring give amplitudes to refine_at_amplitudes"
+    require_fixed_solution(torus, "torus", ring)
     given = _coordinates(torus, coordinates)
     size = float(max(abs(x) for x in given.values()))
     phases = tuple(float(torus.phases[q]) for q in torus.seeds)

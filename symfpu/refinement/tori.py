@@ -16,7 +16,9 @@ import numpy as np
 from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path
 from symfpu.files.progress import Progress, unheard
-from symfpu.numbers.typed import Number, exact
+from symfpu.numbers.long_doubles import long
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, energy_of, exact
 from symfpu.refinement.conditions import (
     Amplitude,
     Energy,
@@ -24,17 +26,14 @@ from symfpu.refinement.conditions import (
     ratio_conditions,
 )
 from symfpu.refinement.digits import (
-    Failure,
     PreciseTorus,
     guess_of,
-    precise_torus,
     require_digits,
-    resumed,
+    torus_to_digits,
 )
 from symfpu.refinement.guesses import moderate_by_seed, require_torus, shifts_of
 from symfpu.refinement.harmonics import MOST_HARMONICS
-from symfpu.refinement.invariance import long
-from symfpu.refinement.kept_sweeps import SweepsFile, require_digits_beside, unkept
+from symfpu.refinement.iterative_refinement import Failure
 from symfpu.refinement.refined_torus import (
     TOLERANCE,
     USEFUL,
@@ -43,9 +42,11 @@ from symfpu.refinement.refined_torus import (
     ended_early,
     refined_torus,
 )
-from symfpu.refinement.ring_tori import RefinedRingTorus, require_independent
+from symfpu.refinement.refinement_file import require_digits_beside
+from symfpu.refinement.umklapp import require_independent
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
-from symfpu.tori.ring_torus import RingTorus
+
+REFINED = RefinedTorus, PreciseTorus
 
 # the tori that are given, and what is asked of them, too
 __all__ = [
@@ -74,31 +75,29 @@ def refine(
 ) -> PreciseTorus: ...
 @overload
 def refine(
-    torus: RingTorus, *, tolerance: float = ..., progress: Progress | None = ...
-) -> RefinedRingTorus: ...
-@overload
-def refine(
     torus: QuasiPeriodic, *, tolerance: float = ..., progress: Progress | None = ...
 ) -> RefinedTorus: ...
+@public
 def refine(
-    torus: QuasiPeriodic | RingTorus,
+    torus: QuasiPeriodic,
     *,
     digits: int | None = None,
     file: Path | str | None = None,
     tolerance: float = TOLERANCE,
     most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
-) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
+) -> RefinedTorus | PreciseTorus:
     """The torus with the same frequencies that solves the equations of motion.
 
     A given torus is the guess.
 
-    torus : of a series, resummed, or any other; its phases (radians) are kept. On a ring one of
-        travelling waves, from `travelling_torus`; a RefinedRingTorus comes back.
-    digits : None for doubles, or 1 .. 1000 of the largest coefficient: a PreciseTorus, whose sweeps
-        start from the torus in doubles, or from a PreciseTorus of fewer digits where they ended.
-        Of fixed ends, a polynomial potential or one of exponentials and powers.
-    file : with digits, a checkpoint written after every sweep; a run that finds one goes on from
+    torus : of a series, resummed, or any other; its phases (radians) are kept. A series is cut at
+        the order of the least residual, as `assess` names it. On a ring one of travelling waves,
+        from `solve_amplitudes`; a ring of standing waves is refined with fixed ends, and unfolded.
+    digits : None for doubles, or 1 .. 1000 of the largest coefficient: a PreciseTorus, by
+        iterative refinement of the torus in doubles or of a PreciseTorus of fewer digits.
+        Of a polynomial potential or one of exponentials and powers.
+    file : with digits, a checkpoint written after every step; a run that finds one goes on from
         it, one to more digits, too.
     tolerance : of the residual of the equations of motion, relative to the largest acceleration,
         dimensionless; harmonics are added until it is reached.
@@ -108,7 +107,7 @@ def refine(
 
     Newton's method on the invariance equation (omega.d/dtheta)^2 Q = force(Q): Eq. eqmo on a
     torus, which the paper solves by series. Raises InputError, on a ring also for frequencies
-    with an integer relation and for digits, and NoTorus with the best iterate.
+    with an integer relation, and NoTorus with the best iterate.
 
     >>> from symfpu import Chain, lindstedt, solve_amplitudes
     >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)
@@ -125,7 +124,7 @@ def refine(
     }
     if digits is not None:
         return _of_digits(torus, digits, None, file, how)
-    if isinstance(torus, RingTorus):
+    if torus.travels:
         require_independent(torus)
     conditions = [FrequencyShift(i, shift) for i, shift in enumerate(shifts_of(torus))]
     refined = refined_torus(torus, conditions, **how)
@@ -145,15 +144,6 @@ def refine_at_amplitudes(
 ) -> PreciseTorus: ...
 @overload
 def refine_at_amplitudes(
-    torus: RingTorus,
-    amplitudes: Mapping[int, Number],
-    *,
-    tolerance: float = ...,
-    most_harmonics: int = ...,
-    progress: Progress | None = ...,
-) -> RefinedRingTorus: ...
-@overload
-def refine_at_amplitudes(
     torus: QuasiPeriodic,
     amplitudes: Mapping[int, Number],
     *,
@@ -161,8 +151,9 @@ def refine_at_amplitudes(
     most_harmonics: int = ...,
     progress: Progress | None = ...,
 ) -> RefinedTorus: ...
+@public
 def refine_at_amplitudes(
-    torus: QuasiPeriodic | RingTorus,
+    torus: QuasiPeriodic,
     amplitudes: Mapping[int, Number],
     *,
     digits: int | None = None,
@@ -170,7 +161,7 @@ def refine_at_amplitudes(
     tolerance: float = TOLERANCE,
     most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
-) -> RefinedTorus | RefinedRingTorus | PreciseTorus:
+) -> RefinedTorus | PreciseTorus:
     """The torus with the given amplitude of every seed; its frequencies are found.
 
     torus : the guess, of the same seeds; its phases (radians) are kept.
@@ -199,7 +190,7 @@ def refine_at_amplitudes(
     require_digits_beside(file, digits)
     if digits is not None:
         return _of_digits(torus, digits, given, file, how)
-    found: RefinedTorus | RefinedRingTorus = _at_amplitudes(torus, given, **how)
+    found: RefinedTorus = _at_amplitudes(torus, given, **how)
     return found
 
 
@@ -209,7 +200,7 @@ def _at_amplitudes(torus: Any, amplitudes: Sequence[Fraction], **how: Any) -> An
 
 
 def _of_digits(
-    torus: QuasiPeriodic | RingTorus,
+    torus: QuasiPeriodic,
     digits: int,
     amplitudes: tuple[Fraction, ...] | None,
     file: Path | str | None,
@@ -219,70 +210,36 @@ def _of_digits(
 
     how : tolerance, most_harmonics and progress, as of `refine`.
     """
-    if isinstance(torus, RingTorus):
-        allowed = "nothing for a torus on a ring, which is refined in doubles"
-        raise InputError("digits", digits, allowed, "leave it out")
-    require_digits(torus.chain, digits)
+    if torus.travels and amplitudes is None:
+        require_independent(torus)
+    require_digits(torus.chain, digits, "torus")
     path = None if file is None else checkpoint_path(file)
     near = _near(torus, amplitudes, how)
     frequencies = torus.frequencies if amplitudes is None else near.frequencies
-    guess, keep = guess_of(near, frequencies, amplitudes), unkept
-    if path is not None:
-        held = frequencies if amplitudes is None else None
-        kept = SweepsFile(
-            path,
-            torus.chain,
-            digits,
-            seeds=torus.seeds,
-            frequencies=held,
-            amplitudes=amplitudes,
-        )
-        before, keep = kept.read(), kept.write
-        guess = guess if before is None else resumed(guess, before)
+    guess = guess_of(near, frequencies, amplitudes)
     try:
-        return precise_torus(guess, digits, how["progress"] or unheard, keep)
+        return torus_to_digits(guess, digits, path, how["progress"] or unheard)
     except Failure as failure:
         raise NoTorus(str(failure), near, near.residual()) from None
 
 
 def _near(
-    torus: QuasiPeriodic, amplitudes: tuple[Fraction, ...] | None, how: dict[str, Any]
-) -> QuasiPeriodic:
-    """The torus that the sweeps start from."""
+    torus: QuasiPeriodic,
+    amplitudes: tuple[Fraction, ...] | None,
+    how: dict[str, Any],
+) -> Any:
+    """The torus that refinement starts from."""
     near = torus
     if amplitudes is not None:
         near = _at_amplitudes(torus, amplitudes, **how)
-    elif not isinstance(torus, (RefinedTorus, PreciseTorus)):
+    elif not isinstance(torus, REFINED):
         near = refine(torus, **how)
     return near
 
 
-@overload
-def refine_at_energy(
-    torus: RingTorus,
-    energy: Number,
-    *,
-    harmonic: bool,
-    amplitude_ratio: Mapping[int, Number] | None = ...,
-    energy_ratio: Mapping[int, Number] | None = ...,
-    tolerance: float = ...,
-    most_harmonics: int = ...,
-    progress: Progress | None = ...,
-) -> RefinedRingTorus: ...
-@overload
+@public
 def refine_at_energy(
     torus: QuasiPeriodic,
-    energy: Number,
-    *,
-    harmonic: bool,
-    amplitude_ratio: Mapping[int, Number] | None = ...,
-    energy_ratio: Mapping[int, Number] | None = ...,
-    tolerance: float = ...,
-    most_harmonics: int = ...,
-    progress: Progress | None = ...,
-) -> RefinedTorus: ...
-def refine_at_energy(
-    torus: QuasiPeriodic | RingTorus,
     energy: Number,
     *,
     harmonic: bool,
@@ -291,7 +248,7 @@ def refine_at_energy(
     tolerance: float = TOLERANCE,
     most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
-) -> RefinedTorus | RefinedRingTorus:
+) -> RefinedTorus:
     """The torus with the given energy and ratio of amplitudes or mode energies.
 
     Its frequencies are found.
@@ -316,10 +273,7 @@ def refine_at_energy(
     0.012
     """
     require_torus(torus)
-    value = exact(energy, "energy")
-    if value <= 0:
-        advice = "take one near the energy of the torus"
-        raise InputError("energy", energy, "a positive number", advice)
+    value = energy_of(energy)
     if not isinstance(harmonic, (bool, np.bool_)):
         allowed = "True for sum E_q, False for H"
         raise InputError("harmonic", harmonic, allowed, "say which energy is meant")
@@ -339,7 +293,7 @@ def refine_at_energy(
 
 
 def _ratio(
-    torus: QuasiPeriodic | RingTorus,
+    torus: QuasiPeriodic,
     amplitudes: Mapping[int, Number] | None,
     energies: Mapping[int, Number] | None,
 ) -> dict[int, Fraction]:
@@ -352,13 +306,11 @@ def _ratio(
         return moderate_by_seed("energy_ratio", energies, torus.seeds, signed=False)
     if amplitudes is not None:
         return moderate_by_seed("amplitude_ratio", amplitudes, torus.seeds, signed=True)
-    found: Mapping[int, Any] = (
-        torus.amplitudes if isinstance(torus, RingTorus) else amplitudes_of(torus)
-    )
+    found = amplitudes_of(torus)
     return {q: exact(float(a), "amplitude") for q, a in found.items()}
 
 
-def _require_energies(torus: QuasiPeriodic | RingTorus) -> None:
+def _require_energies(torus: QuasiPeriodic) -> None:
     """InputError for opposite seeds of a ring, which have the same E_q."""
     opposite = [q for q in torus.seeds if -q in torus.seeds]
     if opposite:

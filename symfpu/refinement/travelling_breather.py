@@ -1,8 +1,8 @@
 """Travelling waves of one seed: the periodic orbits of a ring, followed from rest.
 
 Of frequency, amplitude or energy. Newton's method on the one function of the one angle
-(symfpu.refinement.waves); along the way from rest the amplitude grows with the part gone, shift and
-energy with its square.
+(symfpu.chain.projections.waves); along the way from rest the amplitude grows with the part gone,
+shift and energy with its square.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ import numpy as np
 from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
 from symfpu.files.progress import Progress
+from symfpu.numbers.long_doubles import long
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import Amplitude, Condition, Energy, FrequencyShift
 from symfpu.refinement.guesses import shifts_of
-from symfpu.refinement.invariance import long
-from symfpu.refinement.refined_torus import NoTorus, refined_torus
-from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.tori.ring_torus import RingTorus
+from symfpu.refinement.refined_torus import NoTorus, RefinedTorus, refined_torus
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
 from symfpu.tori.short_waves import plain_waves, shifts_by_squares
 
 LEAST_FREQUENCY = 1e-9  # of a guess
@@ -31,6 +31,7 @@ SMALLEST_PART = 1 / 256  # of the way from rest, in one step
 Target = Callable[[float], Condition]  # of the part of the way that is gone
 
 
+@public
 def travelling_breather(
     chain: Chain,
     seed: int,
@@ -39,7 +40,7 @@ def travelling_breather(
     amplitude: Number | None = None,
     energy: Number | None = None,
     progress: Progress | None = None,
-) -> RefinedRingTorus:
+) -> RefinedTorus:
     """The travelling wave of one seed on a ring, with the given frequency, amplitude or energy.
 
     It is periodic: x_j(t) = f(omega t - 2 pi q j / N), and goes on by one site after 2 pi q / N
@@ -98,18 +99,18 @@ def _curvature(chain: Chain, q: int) -> float:
     return float(shifts_by_squares(chain, (q,))[0, 0])
 
 
-def _plain(chain: Chain, q: int, omega: Fraction, A: float) -> RingTorus:
+def _plain(chain: Chain, q: int, omega: Fraction, A: float) -> FourierTorus:
     """The wave of the seed alone."""
     return plain_waves(chain, (omega,), {q: A})
 
 
-def _of_amplitude(chain: Chain, q: int, A: Fraction) -> tuple[RingTorus, Target]:
+def _of_amplitude(chain: Chain, q: int, A: Fraction) -> tuple[FourierTorus, Target]:
     omega = _linear(chain, q) + _curvature(chain, q) * float(A) ** 2
     guess = _plain(chain, q, _positive(omega), float(A))
     return guess, lambda part: Amplitude(0, long(A) * np.longdouble(part))
 
 
-def _of_frequency(chain: Chain, q: int, omega: Fraction) -> tuple[RingTorus, Target]:
+def _of_frequency(chain: Chain, q: int, omega: Fraction) -> tuple[FourierTorus, Target]:
     guess = _plain(chain, q, omega, 1.0)
     (shift,) = shifts_of(guess)
     curvature = _curvature(chain, q)
@@ -123,7 +124,7 @@ def _of_frequency(chain: Chain, q: int, omega: Fraction) -> tuple[RingTorus, Tar
     return guess, lambda part: FrequencyShift(0, shift * np.longdouble(part) ** 2)
 
 
-def _of_energy(chain: Chain, q: int, H: Fraction) -> tuple[RingTorus, Target]:
+def _of_energy(chain: Chain, q: int, H: Fraction) -> tuple[FourierTorus, Target]:
     """Of a wave of amplitude A the harmonic energy is Omega^2 A^2/2."""
     A = (2 * float(H)) ** 0.5 / _linear(chain, q)
     omega = _linear(chain, q) + _curvature(chain, q) * A**2
@@ -143,7 +144,7 @@ def _positive(omega: float) -> Fraction:
     return exact(max(omega, LEAST_FREQUENCY), "frequency")
 
 
-def _walk(end: RingTorus, target: Target, progress: Progress | None) -> RefinedRingTorus:
+def _walk(end: QuasiPeriodic, target: Target, progress: Progress | None) -> RefinedTorus:
     """The member at the end of the way from rest, in one step or in more."""
     gone, step, near = 0.0, 1.0, (1.0, end)
     while True:
@@ -163,19 +164,16 @@ def _walk(end: RingTorus, target: Target, progress: Progress | None) -> RefinedR
             return found
 
 
-def _scaled(torus: RingTorus, ratio: float) -> RingTorus:
+def _scaled(torus: QuasiPeriodic, ratio: float) -> FourierTorus:
     """A guess further on: coefficients by the ratio, the shift by its square."""
     (q,) = torus.seeds
     linear = _linear(torus.chain, q)
     moved = linear + ratio**2 * (float(torus.frequencies[0]) - linear)
-    amplitudes = {q: ratio * torus.amplitudes[q]}
-    sines = ratio * torus.sines
-    return replace(
-        torus, frequencies=(_positive(moved),), amplitudes=amplitudes, sines=sines
-    )
+    plain = torus.in_doubles()
+    return replace(plain, frequencies=(_positive(moved),), cosines=ratio * plain.cosines)
 
 
-def _require_near(found: RefinedRingTorus, guess: RingTorus) -> None:
+def _require_near(found: RefinedTorus, guess: QuasiPeriodic) -> None:
     """NoTorus where Newton's method went to another family."""
     change = abs(found.amplitude / guess.amplitude - 1)
     if change > REACH or found.frequency <= 0:

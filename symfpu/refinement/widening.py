@@ -11,8 +11,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symfpu.refinement.equation import Floats, Ints, TorusEquation
-from symfpu.refinement.lattice import Lattice, beside, places_of, without_opposites
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import (
+    Floats,
+    Ints,
+    Lattice,
+    beside,
+    places_of,
+    without_opposites,
+)
 
 # of the number of harmonics from one choice to the next, at most: with more, those of large
 # forces beyond the candidates would be left out for candidates of small ones. And at least
@@ -42,7 +49,7 @@ class Widened(NamedTuple):
 
 
 def widened(
-    equation: TorusEquation,
+    equation: InvarianceEquation,
     cosines: Floats,
     shifts: Floats,
     tolerance: float,
@@ -76,7 +83,7 @@ def widened(
 
 @np.errstate(divide="ignore", invalid="ignore")
 def _driven(
-    equation: TorusEquation, harmonics: Ints, forces: Floats, omega: Floats
+    equation: InvarianceEquation, harmonics: Ints, forces: Floats, omega: Floats
 ) -> Floats:
     """Coefficients that forces drive, (M, C); 0 next to a resonance."""
     squares = equation.linear_at(harmonics) ** 2
@@ -84,7 +91,7 @@ def _driven(
     return np.where(np.abs(divisors) > RESONANT * squares, forces / divisors, 0)
 
 
-def _candidates(equation: TorusEquation, cosines: Floats) -> Lattice:
+def _candidates(equation: InvarianceEquation, cosines: Floats) -> Lattice:
     """The harmonics of an equation and those that its slopes couple to them, told apart.
 
     By as many harmonics of the slopes as the tables of all candidates have room for.
@@ -97,7 +104,7 @@ def _candidates(equation: TorusEquation, cosines: Floats) -> Lattice:
 
 
 def _weights(
-    equation: TorusEquation,
+    equation: InvarianceEquation,
     cosines: Floats,
     omega: Floats,
     candidates: Ints,

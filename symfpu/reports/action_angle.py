@@ -8,15 +8,14 @@ from symfpu.action_angle.twist import Twist
 from symfpu.reports.solution import frequencies_record
 from symfpu.reports.tables import fifteen_digits, number_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 PLACES = 12  # digits of doubles in lines for a reader
 
 
 def actions_record(
-    solution: QuasiPeriodic | RingTorus, by_angle: dict[int, Any], found: Twist | None
+    solution: QuasiPeriodic, by_angle: dict[int, Any], found: Twist | None
 ) -> dict[str, Any]:
-    """What the verb prints: the twist with exact frequencies, or of a ring the actions alone."""
+    """What the verb prints: the twist with exact frequencies, or the actions alone."""
     frequencies = frequencies_record(solution)
     if found is not None:
         return twist_record(found) | {"frequencies": frequencies}

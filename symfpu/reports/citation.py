@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from symfpu import __version__
 from symfpu.errors import InputError
+from symfpu.numbers.public import public
 
 TITLE = "symfpu: Poincare-Lindstedt series of q-tori in Fermi-Pasta-Ulam chains"
 AUTHORS = "The symfpu developers"
@@ -17,6 +18,7 @@ PAPER_AUTHORS = (("Christodoulidi", "H."), ("Efthymiopoulos", "C."))
 JOURNAL, YEAR = "Physica D", 2013
 
 
+@public
 def cite(form: str = "text") -> str:
     """How to cite symfpu and the paper that it implements.
 

@@ -53,7 +53,8 @@ def existence_text(proof: ExistenceProof) -> str:
         [
             f"{chain}, seed {proof.seed}, {proof.condition}: proved",
             f"  a {proof.kind} {given} exists within {above(proof.radius, 2)} "
-            f"of the computed one, the only one within {below(proof.unique, 2)},",
+            f"of the computed one, the only one within {below(proof.unique, 2)}",
+            f"  in the norm {proof.norm}, nu = {proof.nu};",
             f"  analytic for |Im omega t| < log {proof.nu}",
             *(f"  {interval}" for interval in proof.intervals),
             f"  Y = {proof.residual:.2g}, Z0 + Z1 = {proof.linear:.3g}, "

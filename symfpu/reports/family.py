@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
+from symfpu.families.members import Event, Member
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.reports.normal import normal_event_record, normal_frequencies_record
 from symfpu.reports.solution import frequencies_record, solution_record
 from symfpu.reports.tables import fifteen_digits, number_text
@@ -21,10 +20,7 @@ SHOWN_MEMBERS = 8  # besides the first; the last one is among them
 SHOWN_DIVISORS = 5
 
 
-Refined = RefinedTorus | RefinedRingTorus
-
-
-def refined_record(torus: Refined) -> dict[str, Any]:
+def refined_record(torus: RefinedTorus) -> dict[str, Any]:
     """A refined torus for JSON: what all solutions have, and its Newton steps."""
     record = solution_record(torus)
     record["energy_error"] = fifteen_digits(energy_spread(torus))
@@ -34,7 +30,7 @@ def refined_record(torus: Refined) -> dict[str, Any]:
     return record
 
 
-def _newton_records(torus: Refined) -> list[dict[str, Any]]:
+def _newton_records(torus: RefinedTorus) -> list[dict[str, Any]]:
     records = []
     for step in torus.steps:
         residual = fifteen_digits(step.residual)
@@ -44,7 +40,7 @@ def _newton_records(torus: Refined) -> list[dict[str, Any]]:
     return records
 
 
-def _divisor_records(torus: Refined) -> list[dict[str, Any]]:
+def _divisor_records(torus: RefinedTorus) -> list[dict[str, Any]]:
     records: list[dict[str, Any]] = []
     for resonance in torus.near_resonances:
         record: dict[str, Any] = {"size": fifteen_digits(resonance.divisor)}
@@ -55,7 +51,7 @@ def _divisor_records(torus: Refined) -> list[dict[str, Any]]:
     return records
 
 
-def energy_spread(torus: Refined, periods: int = 25, points: int = 100) -> float:
+def energy_spread(torus: RefinedTorus, periods: int = 25, points: int = 100) -> float:
     """Largest relative change of H along the orbit over some periods of the slowest seed."""
     slowest = min(float(w) for w in torus.frequencies)
     period = 2 * np.pi / slowest
@@ -64,7 +60,7 @@ def energy_spread(torus: Refined, periods: int = 25, points: int = 100) -> float
     return float(np.abs((energies - start) / start).max())
 
 
-def refined_text(torus: Refined) -> str:
+def refined_text(torus: RefinedTorus) -> str:
     """The same for a reader."""
     record = refined_record(torus)
     amplitudes = {q: float(a) for q, a in record["amplitudes"].items()}
@@ -169,8 +165,10 @@ def family_table(found: Family) -> list[list[str]]:
 def family_text(found: Family) -> Iterator[str]:
     """A family for a reader, in lines."""
     yield repr(found)
-    last = len(found.members) - 1
-    places = {round(i * last / SHOWN_MEMBERS) for i in range(SHOWN_MEMBERS + 1)}
+    count = len(found.members)
+    places = {round(i * (count - 1) / SHOWN_MEMBERS) for i in range(SHOWN_MEMBERS + 1)}
+    if len(places) < count:
+        yield f"  {len(places)} of {count} members shown; all with --json, or in -o FOLDER"
     for k in sorted(places):
         yield f"  {found.members[k]!r}"
     events = sorted(found.events, key=_weight, reverse=True)[:SHOWN_EVENTS]

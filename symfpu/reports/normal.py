@@ -14,8 +14,7 @@ from symfpu.normal.phantom import NormalFrequencySeries
 from symfpu.normal.resonances import ParametricResonance
 from symfpu.reports.solution import frequencies_record
 from symfpu.reports.tables import fifteen_digits, number_text
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus, amplitudes_by_seed
+from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 
 SHOWN_RESONANCES = 10
 
@@ -83,7 +82,7 @@ def normal_family_record(found: NormalFamily) -> dict[str, Any]:
 
 def _member_record(found: NormalModes, part: float) -> dict[str, Any]:
     """A member of a line; its chain and seeds are those of the line."""
-    amplitudes = amplitudes_by_seed(found.torus).items()
+    amplitudes = amplitudes_of(found.torus).items()
     return {
         "part": fifteen_digits(part),
         "amplitudes": {str(q): repr(float(a)) for q, a in amplitudes},
@@ -98,7 +97,7 @@ def normal_family_text(found: NormalFamily) -> str:
     seeds = ",".join(map(str, found.members[0].torus.seeds))
     lines = [f"{chain}, seeds {seeds}: {len(found.members)} tori, {found.verdict}"]
     for one in found.members:
-        amplitudes = amplitudes_by_seed(one.torus).items()
+        amplitudes = amplitudes_of(one.torus).items()
         where = ", ".join(f"A_{q}={float(a):.8g}" for q, a in amplitudes)
         lines.append(f"  {where}: {frequencies_of(one, {})!r}")
     lines += [f"  {event!r}" for event in found.events] or ["  no events"]
@@ -121,14 +120,14 @@ class BySeries(NamedTuple):
 def by_series(
     mode: NormalMode,
     solve: Callable[[int], NormalFrequencySeries],
-    torus: QuasiPeriodic | RingTorus,
+    torus: QuasiPeriodic,
 ) -> BySeries:
     """One mode by series; solve : gives the series that is its own sigma, by mode."""
     try:
         series = solve(mode.mode)
     except (NoNormalModes, ResonantDivisor) as none:
         return BySeries(mode, None, reason=str(none))
-    amplitudes = {q: float(a) for q, a in amplitudes_by_seed(torus).items()}
+    amplitudes = {q: float(a) for q, a in amplitudes_of(torus).items()}
     return BySeries(mode, series, tuple(map(float, series.terms(amplitudes))))
 
 

@@ -23,8 +23,8 @@ from symfpu.chain.length import label_entry
 from symfpu.dynamics.alignment import AlignmentIndices
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
-from symfpu.families.continuation import Event, Member
 from symfpu.families.family import Family
+from symfpu.families.members import Event, Member
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_family import NormalFamily
 from symfpu.frames.attributes import exact_text
@@ -37,7 +37,6 @@ from symfpu.proofs.certificates import PropagationProof
 from symfpu.proofs.sweeps import Sweep
 from symfpu.proofs.theorem import RuleForAllN
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.reports.action_angle import twist_record
 from symfpu.reports.borders import atlas_record, law_record
 from symfpu.reports.certified import residual_proof_record, stay_record
@@ -56,9 +55,7 @@ from symfpu.reports.stability_proof import stability_record
 from symfpu.reports.tables import fifteen_digits
 from symfpu.reports.torus import series_record, torus_record
 from symfpu.series.series import LindstedtSeries
-from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 from symfpu.tori.torus import QTorus
 
 Json = dict[str, Any]
@@ -172,15 +169,12 @@ def _distance_record(found: ProfileDistance) -> Json:
 KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (QTorus, torus_record),
     (RefinedTorus, refined_record),
-    (RefinedRingTorus, refined_record),
     (QuasiPeriodic, solution_record),
     (ExistenceProof, existence_record),
     (StabilityProof, stability_record),
     (ResidualProof, residual_proof_record),
     (StayProof, stay_record),
-    (RingTorus, solution_record),
     (LindstedtSeries, series_record),
-    (TravellingSeries, series_record),
     (Family, family_record),
     (Member, member_record),
     (Event, event_record),

@@ -11,7 +11,6 @@ from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION
 from symfpu.refinement.digits import PreciseTorus
 from symfpu.reports.tables import fifteen_digits, number_text
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus
 
 SHOWN_FREQUENCY = (
     40  # characters of an exact frequency in the terminal; all of them are in the JSON
@@ -19,7 +18,7 @@ SHOWN_FREQUENCY = (
 
 
 def solution_record(
-    solution: QuasiPeriodic | RingTorus,
+    solution: QuasiPeriodic,
     found: Floquet | None = None,
     warnings: tuple[str, ...] = (),
 ) -> dict[str, Any]:
@@ -47,7 +46,7 @@ def solution_record(
     }
 
 
-def _limits(solution: QuasiPeriodic | RingTorus) -> dict[str, str]:
+def _limits(solution: QuasiPeriodic) -> dict[str, str]:
     """What a torus of many digits knows of itself."""
     if not isinstance(solution, PreciseTorus):
         return {}
@@ -62,7 +61,7 @@ def frequencies_record(solution: Any) -> dict[str, str] | None:
     return {str(q): exact_text(w) for q, w in solution.omega.items()}
 
 
-def _energies(solution: QuasiPeriodic | RingTorus) -> Iterator[tuple[str, Any]]:
+def _energies(solution: QuasiPeriodic) -> Iterator[tuple[str, Any]]:
     """H and sum E_q at t = 0, and the time average of the latter, with all digits."""
     numbers = DOUBLES if solution.digits is None else MULTIPRECISION
     with numbers.context(solution.digits):

@@ -48,9 +48,10 @@ def stability_text(proof: StabilityProof) -> str:
     orbit = proof.existence
     chain = repr(orbit.chain).removeprefix("Chain(").removesuffix(")")
     word = "linearly stable" if proof.stable else "linearly unstable"
-    first = (
-        f"{chain}, seed {orbit.seed}, omega = {decimal(orbit.frequency)}: {word}, proved"
-    )
+    given = f"omega = {decimal(orbit.frequency)}"
+    if orbit.fixed != "frequency":
+        given = f"{orbit.condition}, {given} +- {above(orbit.frequency_radius, 1)}"
+    first = f"{chain}, seed {orbit.seed}, {given}: {word}, proved"
     lines = [first, f"  {proof.theorem}"]
     for gap in proof.gaps[:MOST_GAPS]:
         left, right = gap.between

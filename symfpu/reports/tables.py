@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from symfpu.files.writing import write_rows
 from symfpu.numbers.arithmetic import text
 
 GAP = "  "  # between the columns of a table in a terminal
@@ -76,7 +76,6 @@ def write_csv(
     paths = []
     for name, (header, lines) in tables.items():
         path = folder / f"{name}.csv"
-        with path.open("w", newline="") as file:
-            csv.writer(file).writerows([header, *lines])
+        write_rows(path, [header, *lines])
         paths.append(path)
     return paths

@@ -9,7 +9,6 @@ from symfpu.chain.length import label_entry
 from symfpu.reports.solution import frequencies_record, solution_record
 from symfpu.reports.tables import GAP, fifteen_digits, number_text, text_table
 from symfpu.series.series import LindstedtSeries
-from symfpu.series.travelling import TravellingSeries
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment
 
@@ -35,13 +34,13 @@ def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[st
     return record
 
 
-def series_record(series: LindstedtSeries | TravellingSeries) -> dict[str, Any]:
+def series_record(series: LindstedtSeries) -> dict[str, Any]:
     """A series for JSON, without its coefficients: those are in its table and in its file."""
     record = {"kind": type(series).__name__, **series.chain.typed}
     record["seeds"] = list(map(label_entry, series.seeds))
     record["frequencies"] = frequencies_record(series)
     record["order"] = series.order
-    record["digits"] = getattr(series, "digits", None)  # those of waves are doubles
+    record["digits"] = series.digits
     record["smallest_divisors"] = _divisor_records(series)
     return record
 
@@ -54,7 +53,7 @@ def _history(torus: QTorus) -> dict[str, list[str]]:
     return history
 
 
-def _divisor_records(series: LindstedtSeries | TravellingSeries) -> list[dict[str, Any]]:
+def _divisor_records(series: LindstedtSeries) -> list[dict[str, Any]]:
     records = []
     for divisor in series.smallest_divisors:
         record: dict[str, Any] = {"size": fifteen_digits(divisor.size)}

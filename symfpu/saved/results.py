@@ -14,9 +14,11 @@ from symfpu.bundles.tree import OWN_FORMAT, value_of, write_tree
 from symfpu.errors import InputError
 from symfpu.files.archive import Archive, Json
 from symfpu.frames.tabled import Gridded, Tabled
+from symfpu.numbers.public import public
 from symfpu.saved.classes import CLASSES, is_result
 
 
+@public
 def save(
     path: Path | str,
     result: Any,
@@ -66,6 +68,7 @@ def _advice(result: object) -> str:
     return "pass what symfpu computed"
 
 
+@public
 def load(path: Path | str) -> Bundle:
     """What `save` wrote, exactly as it was: `Bundle.result`. Executes nothing.
 

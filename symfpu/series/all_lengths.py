@@ -34,7 +34,7 @@ from symfpu.chain.length import HighMode, mode_label, mode_of, seed_labels
 from symfpu.chain.symbols import amplitude_symbol, linear_symbol, phase_symbol
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
-from symfpu.numbers.typed import integer
+from symfpu.numbers.typed import length_of, order_of
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import monomial_space
 from symfpu.series.recursion import named_series
@@ -89,7 +89,7 @@ class SeriesForAllN(LindstedtSeries):
         >>> series.at_length(N=32)
         LindstedtSeries(N=32, alpha=1, seeds=1, order 2, 155 coefficients (symbolic))
         """
-        if integer(N, "N", 2) < self.valid_from:
+        if length_of(N) < self.valid_from:
             allowed = f"from {self.valid_from} up"
             advice = "lower the order, or run lindstedt on the chain itself"
             raise InputError("N", N, allowed, advice)
@@ -109,6 +109,9 @@ class SeriesForAllN(LindstedtSeries):
             coordinates=tuple(coordinates),
             corrections=_corrections(self.corrections, program, self.ring),
         )
+
+    def _place(self, q: Any, order: int) -> tuple[int, None]:
+        return self._mode(q) - 1, None
 
     def _mode(self, q: Any) -> int:
         """The column of a mode, counted from one."""
@@ -146,7 +149,7 @@ def series_for_all_lengths(
     Raises InputError for seeds that are no labels or are repeated, for an order out of range, and
     for rings of numbers.
     """
-    order = integer(order, "order", 0)
+    order = order_of(order)
     labels = in_order(seed_labels(seeds))
     ends = ends_reached(chain, labels, order)
     N, low = ends.valid_from, ends.low

@@ -8,7 +8,7 @@ from fractions import Fraction
 from symfpu.errors import InputError
 from symfpu.numbers.typed import Number, exact, integer
 
-MOST_DIGITS = 10_000
+MOST_DIGITS = 5_000
 SMALLEST, LARGEST = Fraction(1, 10**6), 10**6
 
 

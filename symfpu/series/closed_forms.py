@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import re
+import sys
 from collections.abc import Iterable, Sequence
+from numbers import Number
 from typing import Any
 
 import numpy as np
 import symengine as se
+from symengine.lib.symengine_wrapper import Relational
 
 from symfpu.algebra.expansion import Expansion
 from symfpu.algebra.formulas import Multiplier, NodeTable, multiplier_symbol
@@ -15,14 +19,38 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.length import HighMode, mode_label, seed_labels
 from symfpu.chain.symbols import chosen_symbol, linear_symbol
 from symfpu.errors import InputError
+from symfpu.numbers.public import public
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.series import LindstedtSeries
 
 MODE = r"(N-\d+|\d+)"
 MULTIPLIER = re.compile(rf"L_\{{{MODE}\}}\((-?\d+(?:,-?\d+)*)\)")
 LINEAR = re.compile(rf"Omega_(?:\{{{MODE}\}}|(\d+))")
+MOST_TERMS = 10**6  # of an expanded expression, or words of its integers
+POWER_OF_A_WORD = 64
 
 
+def formula_of(expression: Any, argument: str) -> Any:
+    """A SymEngine expression of what is one, of a number or a text; InputError for the rest."""
+    sympy = sys.modules.get("sympy")  # whoever passes its expressions has imported it
+    known = isinstance(expression, str | Number | se.Basic)
+    known = known or (sympy is not None and isinstance(expression, sympy.Basic))
+    try:
+        if not known or isinstance(expression, bool):
+            raise TypeError("neither an expression nor a number")
+        formula = se.sympify(expression)
+    except (TypeError, ValueError, RuntimeError, OverflowError, se.SympifyError) as error:
+        allowed = "an expression of SymEngine or SymPy, a number or a text such as 'A1**2'"
+        raise InputError(
+            argument, expression, allowed, "pass a term of a series"
+        ) from error
+    if not isinstance(formula, se.Expr) or isinstance(formula, Relational):
+        allowed = "an expression, neither a truth value nor a relation"
+        raise InputError(argument, expression, allowed, "pass a term of a series")
+    return formula
+
+
+@public
 def substitute_multipliers(expression: Any, seeds: Sequence[int | str]) -> Any:
     """L_q(nu) written out as Omega_q^2 / (lambda_q - (nu.omega)^2), Eq. Lm.
 
@@ -40,7 +68,7 @@ def substitute_multipliers(expression: Any, seeds: Sequence[int | str]) -> Any:
     labels = seed_labels(seeds)
     chosen = [chosen_symbol(q) for q in labels]
     quotients = {}
-    formula = se.sympify(expression)
+    formula = formula_of(expression, "expression")
     for symbol in formula.free_symbols:
         found = MULTIPLIER.fullmatch(symbol.name)
         if not found:
@@ -55,6 +83,7 @@ def substitute_multipliers(expression: Any, seeds: Sequence[int | str]) -> Any:
     return formula.subs(quotients)
 
 
+@public
 def closed_form(
     expression: Any,
     chain: Chain,
@@ -108,6 +137,7 @@ def _sine(q: int, length: Any) -> Any:
     return 2 * (se.cos(angle) if isinstance(q, HighMode) else se.sin(angle))
 
 
+@public
 def collect_terms(expression: Any, symbols: Iterable[Any]) -> dict[Any, Any]:
     """An expression sorted by powers of some symbols: {monomial: coefficient}.
 
@@ -123,13 +153,16 @@ def collect_terms(expression: Any, symbols: Iterable[Any]) -> dict[Any, Any]:
     (4*B, 1, 3)
     """
     chosen = set()
-    for symbol in symbols:
-        if not getattr(se.sympify(symbol), "is_Symbol", False):
-            raise InputError(
-                "symbols", str(symbol), "symbols", "take those of free_symbols"
-            )
-        chosen.add(se.sympify(symbol))
-    expanded = se.expand(se.sympify(expression))
+    for given in symbols:
+        symbol = formula_of(given, "symbols")
+        if not getattr(symbol, "is_Symbol", False):
+            raise InputError("symbols", str(given), "symbols", "take those of free_symbols")
+        chosen.add(symbol)
+    formula = formula_of(expression, "expression")
+    if _expanded_terms(formula) > MOST_TERMS:
+        allowed = f"one of at most {MOST_TERMS:,} terms when expanded"
+        raise InputError("expression", f"{formula!s:.60}", allowed, "pass lower powers")
+    expanded = se.expand(formula)
     summands = expanded.args if isinstance(expanded, se.Add) else (expanded,)
     terms: dict[Any, Any] = {}
     for summand in summands:
@@ -140,6 +173,22 @@ def collect_terms(expression: Any, symbols: Iterable[Any]) -> dict[Any, Any]:
     return {monomial: value for monomial, value in terms.items() if value != 0}
 
 
+def _expanded_terms(node: Any) -> int:
+    """At least as many terms, or words, as an expanded expression has, without expanding it."""
+    if isinstance(node, se.Add):
+        return sum(map(_expanded_terms, node.args))
+    if isinstance(node, se.Mul):
+        return math.prod(map(_expanded_terms, node.args))
+    base, power = node.args if isinstance(node, se.Pow) else (node, se.Integer(1))
+    if not (isinstance(base, se.Add) and isinstance(power, se.Integer) and power > 0):
+        return 1
+    terms, n = _expanded_terms(base), int(power)
+    if terms > 1 and n > MOST_TERMS:
+        return n
+    return math.comb(n + terms - 1, n) * (1 + n // POWER_OF_A_WORD)
+
+
+@public
 def same_series(a: LindstedtSeries, b: LindstedtSeries) -> bool:
     """Are two universal series the same polynomials, term by term?
 

@@ -14,7 +14,7 @@ from symfpu.frames.table import Column, Table, by_seed
 
 Array = NDArray[Any]
 
-COORDINATE, STRETCH = "coordinate", "stretch"
+COORDINATE = "coordinate"
 FREQUENCY, SQUARE = "frequency", "squared frequency"
 
 

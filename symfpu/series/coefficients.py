@@ -15,14 +15,17 @@ from symfpu.algebra.polynomials import (
     Polynomial,
     square_root,
 )
+from symfpu.algebra.selection import Modes
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import (
     Arithmetic,
     with_digits,
 )
-from symfpu.numbers.typed import integer
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import integer, order_of
 from symfpu.series.divisors import SmallDivisor
+from symfpu.series.monomials import modes_of
 from symfpu.series.rings import RINGS
 from symfpu.series.tables import LOG10_2, Exponents, Tables
 
@@ -38,6 +41,7 @@ class ResiduePoint:
     frequencies: tuple[int, ...]
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class SeriesCoefficients:
     """What a series consists of; its fields are those of `LindstedtSeries`."""
@@ -62,6 +66,11 @@ class SeriesCoefficients:
     def omega(self) -> dict[int, Fraction]:
         """The frequencies by seed, as the amplitudes are; exact, and none where none are chosen."""
         return dict(zip(self.seeds, self.frequencies or (), strict=False))
+
+    @cached_property
+    def space(self) -> Modes:
+        """The modes that the columns of its tables are."""
+        return modes_of(self.chain, self.seeds, self.grading)
 
     @cached_property
     def tables(self) -> Tables:
@@ -106,7 +115,7 @@ class SeriesCoefficients:
         return 1 + self.chain.degree_step * self._order(order)
 
     def _order(self, order: int) -> int:
-        if integer(order, "order", 0) > self.order:
+        if order_of(order) > self.order:
             raise InputError(
                 "order",
                 order,
@@ -116,8 +125,11 @@ class SeriesCoefficients:
         return int(order)
 
     def _mode(self, q: int) -> int:
-        if integer(q, "q", 1) >= self.chain.N:
-            raise InputError("q", q, f"1..{self.chain.N - 1}", "name a mode of the chain")
+        modes = self.chain.mode_numbers
+        if integer(q, "q", modes[0]) not in modes:
+            without = " without 0" if self.chain.periodic else ""
+            allowed = f"{modes[0]}..{modes[-1]}{without}"
+            raise InputError("q", q, allowed, "name a mode of the chain")
         return int(q)
 
     def _seed(self, q: int) -> int:
@@ -149,14 +161,21 @@ class SeriesCoefficients:
 
         Returns exponents (count, 2s) = (p_1, n_1, ..., p_s, n_s) and coefficients (count,) of its
         canonical monomials, zero coefficients left out. The conjugate of a monomial has the same
-        coefficient and is not listed again. Raises InputError for a mode or an order outside the
-        series, SymfpuError where a coefficient exceeds doubles.
+        coefficient and is not listed again; on a ring it is the same wave, seen from -q.
+        Raises InputError for a mode or an order outside the series, SymfpuError where a coefficient
+        exceeds doubles.
         """
-        column = self._mode(q) - 1
         self._order(order)
+        column, own = self._place(q, order)
         with self._context():
             values = self.tables.entries(self.coordinates[order], [column])[:, 0]
+            if own is not None:
+                values = np.where(own, values, 0)
             return self._coefficients_of(q, order, values)
+
+    def _place(self, q: int, order: int) -> tuple[int, NDArray[np.bool_] | None]:
+        """The column of a mode, and which rows of it are its own; None for all."""
+        return self.space.column(self._mode(q), self.degree(order))
 
     def _coefficients_of(
         self, q: int, order: int, values: NDArray[Any]
@@ -201,6 +220,9 @@ class SeriesCoefficients:
 
     def squared_polynomial(self, i: int, order: int) -> Polynomial:
         """[omega_q^2]^(k) as {powers of w_i^2: coefficient}, scaled as the tables are."""
+        if not 0 <= i < len(self.seeds):
+            allowed = f"an integer in 0..{len(self.seeds) - 1}, the place of a seed"
+            raise InputError("i", i, allowed, "count the seeds from 0")
         linear = self._linear(self.seeds[i])
         if order == 0:
             constant = (0,) * len(self.seeds)

@@ -21,8 +21,10 @@ from numpy.typing import NDArray
 from symfpu.algebra.formulas import multiplier_symbol
 from symfpu.algebra.grading import HarmonicRows, Ints, extended
 from symfpu.algebra.residue import ResidueRing, cosine_table
+from symfpu.algebra.selection import NO_SEED, CosineModes, Modes
 from symfpu.chain.chain import Chain
 from symfpu.errors import ResonantDivisor, VanishingResidue
+from symfpu.series.ring_resonances import refuse_resonances
 
 Floats = NDArray[np.float64]
 SMALLEST_KEPT = 10  # how many of the smallest divisors a series remembers
@@ -51,7 +53,8 @@ class Divisors(Protocol):
 
         Zero elsewhere and in the gauge term nu = e_q of a seed.
 
-        harmonics : (H, s). carried : (H, N-1), as the result. Raises where a divisor vanishes.
+        harmonics : (H, s). carried : (H, C), as the result, one column for each mode, or one for
+        the waves of a ring. Raises where a divisor vanishes.
         """
 
     def smallest(self) -> tuple[SmallDivisor, ...]:
@@ -68,26 +71,17 @@ class Float64Divisors:
     the two nearly cancel.
     """
 
-    def __init__(
-        self,
-        chain: Chain,
-        seeds: Sequence[int],
-        frequencies: Sequence[Fraction],
-        degree: int,
-    ) -> None:
-        self.chain = chain
-        self.seeds = tuple(seeds)
+    def __init__(self, chain: Chain, space: Modes, frequencies: Sequence[Fraction]) -> None:
+        self.chain, self.space = chain, space
         self.frequencies = tuple(frequencies)
         largest_frequency = max(2.0, *(float(w) for w in frequencies))
-        _, exponent = np.frexp(largest_frequency * (degree + 1))
+        _, exponent = np.frexp(largest_frequency * (space.grading.degree + 1))
         self._grid = 52 - int(exponent)
         with mpmath.workdps(60):
-            linear = [chain.linear_frequency(q) for q in range(1, chain.N)]
-            bases = list(linear)
+            # by wave number, and after them those of the seeds
+            linear = [chain.linear_frequency(q) for q in range(chain.N)]
             chosen = [_quotient(w) for w in frequencies]
-            for q, omega in zip(seeds, chosen, strict=True):
-                bases[q - 1] = omega
-            self._base = self._split(bases)
+            self._base = self._split([*linear, *chosen])
             self._chosen = self._split(chosen)
             self._numerators = np.array([float(omega**2) for omega in linear])
         self._smallest: dict[tuple[int, tuple[int, ...]], SmallDivisor] = {}
@@ -108,39 +102,54 @@ class Float64Divisors:
 
         Zero elsewhere and in the gauge term nu = e_q of a seed.
 
-        harmonics : (H, s). carried : (H, N-1). Raises ResonantDivisor where a divisor is exactly
-        zero, or so small that doubles cannot tell it from zero.
+        harmonics : (H, s). carried : (H, C). Raises ResonantDivisor where a divisor is exactly
+        zero, or so small that doubles cannot tell it from zero, and for a resonance of a ring.
         """
-        gauge = gauge_terms(harmonics, self.seeds, self.chain.N)
-        wanted = carried & ~gauge
+        wanted = carried & ~self.space.gauge(harmonics)
+        waves = self.space.wave_numbers(harmonics)
+        if self.chain.periodic:
+            refuse_resonances(self.chain, self.space, harmonics, wanted[:, 0], order)
+        met = self.space.seeds_met(harmonics)
+        own = np.where(met == NO_SEED, waves, self.chain.N + met)
         chosen, chosen_rest = self._chosen
         coarse = harmonics @ chosen
         fine = harmonics @ chosen_rest
         sign = np.where(coarse < 0, -1.0, 1.0)
         drive = (sign * coarse)[:, None]
         drive_rest = (sign * fine)[:, None]
-        base, base_rest = self._base
+        base, base_rest = (part[own] for part in self._base)
         difference = (base - drive) + (base_rest - drive_rest)
         divisors = difference * ((base + drive) + (base_rest + drive_rest))
-        self._refuse_zero(harmonics, wanted, difference, order)
-        self._remember(harmonics, wanted, np.abs(divisors), order)
-        table = np.zeros_like(divisors)
-        return np.asarray(np.divide(self._numerators, divisors, out=table, where=wanted))
+        places = np.broadcast_to(waves, wanted.shape)
+        self._refuse_zero(harmonics, places, wanted, difference, order)
+        self._remember(harmonics, places, wanted, np.abs(divisors), order)
+        table, numerators = np.zeros_like(divisors), self._numerators[waves]
+        return np.asarray(np.divide(numerators, divisors, out=table, where=wanted))
 
     def _refuse_zero(
-        self, harmonics: Ints, wanted: NDArray[np.bool_], difference: Floats, order: int
+        self,
+        harmonics: Ints,
+        waves: Ints,
+        wanted: NDArray[np.bool_],
+        difference: Floats,
+        order: int,
     ) -> None:
         resolution = 2.0 ** -(self._grid + 40)
         near_zero = np.abs(difference) < 2.0 ** (4 - self._grid)
         for row, column in np.argwhere(wanted & near_zero):
-            mode = int(column) + 1
-            harmonic = tuple(map(int, harmonics[row]))
-            exact = vanishes(self.chain.N, self.seeds, self.frequencies, mode, harmonic)
+            harmonic, mode = self.space.named(harmonics[row], waves[row, column])
+            seeds = self.space.seeds
+            exact = vanishes(self.chain, seeds, self.frequencies, mode, harmonic)
             if exact or abs(difference[row, column]) < resolution:
-                raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
+                raise ResonantDivisor(mode, harmonic, seeds, order, exact=exact)
 
     def _remember(
-        self, harmonics: Ints, wanted: NDArray[np.bool_], sizes: Floats, order: int
+        self,
+        harmonics: Ints,
+        waves: Ints,
+        wanted: NDArray[np.bool_],
+        sizes: Floats,
+        order: int,
     ) -> None:
         candidates = np.where(wanted, sizes, np.inf).ravel()
         # some may be there already
@@ -148,9 +157,8 @@ class Float64Divisors:
         smallest = np.argpartition(candidates, count - 1)[:count] if count else ()
         for at in smallest:
             if np.isfinite(candidates[at]):
-                row, column = divmod(int(at), self.chain.N - 1)
-                mode = column + 1
-                harmonic = tuple(map(int, harmonics[row]))
+                row, column = divmod(int(at), self.space.columns)
+                harmonic, mode = self.space.named(harmonics[row], waves[row, column])
                 found = SmallDivisor(float(candidates[at]), mode, harmonic, order)
                 self._smallest.setdefault((mode, harmonic), found)
         by_size = sorted(self._smallest.items(), key=lambda item: item[1].size)
@@ -171,15 +179,14 @@ class FixedPointDivisors:
     def __init__(
         self,
         chain: Chain,
-        seeds: Sequence[int],
+        space: CosineModes,
         frequencies: Sequence[Fraction],
         bits: int,
         *,
         least: float = 0.0,
     ) -> None:
         """least : the smallest divisor, as doubles know it; 0 for any above 2^-bits."""
-        self.chain = chain
-        self.seeds = tuple(seeds)
+        self.chain, self.space = chain, space
         self.frequencies = tuple(frequencies)
         self.bits = bits
         self.known: dict[int, Floats] = {}  # moduli of multipliers, by order
@@ -201,8 +208,8 @@ class FixedPointDivisors:
                 linear.append(int(mpmath.nint(square)))
         self._lambda = np.array(linear, dtype=object)
         self._numerators = self._lambda << bits
-        for q, whole in zip(seeds, self._omega, strict=True):
-            self._lambda[q - 1] = self._squared(whole)
+        for column, whole in zip(space.seed_columns, self._omega, strict=True):
+            self._lambda[column] = self._squared(whole)
 
     def _squared(self, whole: Any) -> Any:
         square = whole * whole
@@ -217,7 +224,7 @@ class FixedPointDivisors:
 
         Raises ResonantDivisor where a divisor is zero or below 2^-bits, or 2^-depth.
         """
-        wanted = carried & ~gauge_terms(harmonics, self.seeds, self.chain.N)
+        wanted = carried & ~self.space.gauge(harmonics)
         rows = self._rows.of(harmonics)
         self._found = extended(self._found, len(self._rows), 0)
         self._sizes = extended(self._sizes, len(self._rows), 0.0)
@@ -235,10 +242,10 @@ class FixedPointDivisors:
         divisors = self._lambda[columns] - self._squared(drives)[rows]
         smallest_allowed = 1 << (self._places - self._depth)
         for at in np.flatnonzero(np.abs(divisors) < smallest_allowed):
-            mode = int(columns[at]) + 1
+            mode, seeds = int(columns[at]) + 1, self.space.seeds
             harmonic = tuple(map(int, harmonics[rows[at]]))
-            exact = vanishes(self.chain.N, self.seeds, self.frequencies, mode, harmonic)
-            raise ResonantDivisor(mode, harmonic, self.seeds, order, exact=exact)
+            exact = vanishes(self.chain, seeds, self.frequencies, mode, harmonic)
+            raise ResonantDivisor(mode, harmonic, seeds, order, exact=exact)
         multipliers = self._numerators[columns] // divisors
         moduli = np.abs((multipliers / 2**self.bits).astype(np.float64))
         self._found[own[rows], columns] = multipliers
@@ -314,19 +321,17 @@ class ResidueDivisors:
     def __init__(
         self,
         chain: Chain,
-        seeds: Sequence[int],
+        space: CosineModes,
         ring: ResidueRing,
         frequencies: Sequence[int],
     ) -> None:
-        self.chain = chain
-        self.seeds = tuple(seeds)
-        self.ring = ring
+        self.space, self.ring = space, ring
         cosines = cosine_table(chain.N, ring.prime, ring.root)
         squares = [ring.element(2 - 2 * cosines[2 * q]) for q in range(1, chain.N)]
         self._numerators = np.array(squares)
         self._lambda = self._numerators.copy()
-        for q, omega in zip(seeds, frequencies, strict=True):
-            self._lambda[q - 1] = ring.element(omega * omega)
+        for column, omega in zip(space.seed_columns, frequencies, strict=True):
+            self._lambda[column] = ring.element(omega * omega)
         self._omega = [int(w) for w in frequencies]
 
     def multipliers(
@@ -337,8 +342,7 @@ class ResidueDivisors:
         Zero where the selection rules keep nu from mode q, and in the gauge term.
         """
         ring = self.ring
-        gauge = gauge_terms(harmonics, self.seeds, self.chain.N)
-        wanted = carried & ~gauge
+        wanted = carried & ~self.space.gauge(harmonics)
         residues = []
         for nu in harmonics:
             drive = sum(int(n) * w for n, w in zip(nu, self._omega, strict=True))
@@ -362,9 +366,8 @@ class UniversalDivisors:
     It holds for every chain and all generic frequencies at once.
     """
 
-    def __init__(self, chain: Chain, seeds: Sequence[int]) -> None:
-        self.chain = chain
-        self.seeds = tuple(seeds)
+    def __init__(self, space: CosineModes) -> None:
+        self.space = space
 
     def multipliers(
         self, harmonics: Ints, carried: NDArray[np.bool_], order: int
@@ -373,7 +376,7 @@ class UniversalDivisors:
 
         Shape (H, N-1).
         """
-        gauge = gauge_terms(harmonics, self.seeds, self.chain.N)
+        gauge = self.space.gauge(harmonics)
         table = np.full(carried.shape, se.Integer(0), dtype=object)
         for row, column in np.argwhere(carried & ~gauge):
             nu = [int(n) for n in harmonics[row]]
@@ -386,7 +389,7 @@ class UniversalDivisors:
 
 
 def vanishes(
-    N: int,
+    chain: Chain,
     seeds: Sequence[int],
     frequencies: Sequence[Fraction],
     mode: int,
@@ -394,13 +397,16 @@ def vanishes(
 ) -> bool:
     """Whether lambda_mode = (nu.omega)^2 for the exact rational frequencies.
 
-    A linear frequency 2 sin(q pi / 2N) is rational only if it is 1, for q = N/3 (Niven).
+    A linear frequency 2 sin(q pi / 2N) is rational only if it is 1, for q = N/3, or, on a ring of N
+    for 2N, 2, for q = N/2 (Niven).
     """
     drive = _drive(harmonic, frequencies)
     if mode in seeds:
         own = frequencies[list(seeds).index(mode)]
         return abs(drive) == own
-    return 3 * mode == N and abs(drive) == 1
+    parts_of_a_turn = Fraction(abs(mode), chain.turn)
+    rational = {Fraction(1, 6): 1, Fraction(1, 2): 2}.get(parts_of_a_turn)
+    return abs(drive) == rational
 
 
 def divisor(
@@ -414,8 +420,10 @@ def divisor(
     drive = _drive(harmonic, frequencies)
     with mpmath.workdps(60):
         base = chain.linear_frequency(mode)
-        if mode in seeds:
-            base = _quotient(frequencies[list(seeds).index(mode)])
+        for own in (mode, -mode):  # two waves of a ring
+            if own in seeds:
+                base = _quotient(frequencies[list(seeds).index(own)])
+                break
         return float(base**2 - _quotient(drive) ** 2)
 
 
@@ -428,16 +436,3 @@ def _drive(harmonic: Sequence[int], frequencies: Sequence[Fraction]) -> Fraction
 def _quotient(value: Fraction) -> Any:
     """A fraction as mpf at the precision of the context."""
     return mpmath.mpf(value.numerator) / value.denominator
-
-
-def gauge_terms(harmonics: Ints, seeds: Sequence[int], N: int) -> NDArray[np.bool_]:
-    """Where a harmonic is +-e_q in the seed mode q itself; shape (H, N-1).
-
-    The gauge leaves no term there.
-    """
-    gauge = np.zeros((len(harmonics), N - 1), dtype=np.bool_)
-    moduli = np.abs(harmonics)
-    units = np.eye(len(seeds), dtype=np.int64)
-    for unit, q in zip(units, seeds, strict=True):
-        gauge[:, q - 1] = (moduli == unit).all(axis=1)
-    return gauge

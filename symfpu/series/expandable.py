@@ -21,6 +21,7 @@ from symfpu.chain.symbols import (
 )
 from symfpu.errors import InputError
 from symfpu.notebook import Meaning, OpenableFormulas
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.arguments import frequencies_of
@@ -33,6 +34,7 @@ BITS = 160  # of numbers that are shown with ten digits: they may lose a hundred
 BONDS = se.Symbol("N")
 
 
+@public
 @dataclass(frozen=True)
 class ExpandableTerm:
     """A term of a series in which a click on a symbol shows what it stands for.
@@ -79,6 +81,7 @@ class ExpandableTerm:
         return self.html()
 
 
+@public
 def expandable_term(
     series: LindstedtSeries,
     q: int | str,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from symfpu.algebra.fixedpoint import FixedPointRing, Precision
 from symfpu.algebra.majorant import MajorantRing
 from symfpu.algebra.selection import CosineModes
-from symfpu.algebra.words import LIMB_BITS, whole_places
+from symfpu.algebra.words import LIMB_BITS, TooFewPrimes, whole_places
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
@@ -23,7 +23,7 @@ from symfpu.series.divisors import (
     FixedPointDivisors,
     Float64Divisors,
 )
-from symfpu.series.force import positive_growths
+from symfpu.series.force import positive_growths, scaled_growths
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import monomial_space
 from symfpu.series.recursion import named_series, ring_series, run_recursion
@@ -68,23 +68,26 @@ def fixed_point_series(
 
     known = named_series(FLOAT64, chain, space, chosen, order, stage(0))
     unit = _fitting_unit(known)
-    doubles = Float64Divisors(chain, seeds, chosen, space.grading.degree)
+    doubles = Float64Divisors(chain, space, chosen)
     multipliers = EnlargedMultipliers(doubles)
     expected = _enlarged(_moduli(known, unit), space)
     bounds = _bounds(chain, space, expected, unit, multipliers, 2.0**-LEAST_BITS, stage(1))
-    lost, grown = _lost(bounds, expected, order), bool(chain.potential.growths())
+    lost, grown = _lost(bounds, expected, order), bool(scaled_growths(chain))
     least = min((divisor.size for divisor in known.smallest_divisors), default=0.0)
     for attempt in range(ATTEMPTS):
         bits = _places(digits, lost, whole_limbs=grown)
         headroom = math.ceil(math.log2(bounds.largest)) + 3
         precision = Precision(bits, headroom, unit)
-        divisors = FixedPointDivisors(chain, seeds, chosen, bits, least=least)
+        divisors = FixedPointDivisors(chain, space, chosen, bits, least=least)
         try:
             ring = FixedPointRing(space, precision)
             result = ring_series(chain, chosen, order, ring, divisors, stage(2 + attempt))
         except OverflowError:  # sums larger than doubles had made them
             bounds = bounds._replace(largest=bounds.largest * 2.0**LIMB_BITS)
             continue
+        except TooFewPrimes:
+            allowed = f"fewer, since order {order} loses {math.ceil(lost)} bits beside them"
+            raise InputError("digits", digits, allowed, "or take a lower order") from None
         smallest = known.smallest_divisors
         result = replace(result, smallest_divisors=smallest, digits=digits, bits=bits)
         found = _moduli(result, unit)

@@ -60,7 +60,13 @@ class GrowthForce:
 
 
 def scaled_growths(chain: Chain) -> tuple[Growth, ...]:
-    """Those of the chain's tension in units of the small parameter."""
+    """Those of the chain's tension in units of the small parameter.
+
+    None of an even V: a growth has all degrees, the series odd ones alone, and the unit of the
+    stretch is a square root.
+    """
+    if chain.potential.even:
+        return ()
     return tuple(g.scaled(chain.unit_coupling) for g in chain.potential.growths())
 
 
@@ -85,10 +91,18 @@ def force_numbers(chain: Chain, top: int) -> list[Fraction]:
 
 def stored_powers(chain: Chain, top: int, *, grows: bool) -> int:
     """How many functions on the bonds a ring keeps for a series up to a degree."""
-    growths = chain.potential.growths()
+    growths = scaled_growths(chain)
     if grows and growths:
         return len(growths) + 2
-    return max(chain.relative_couplings(top), default=2) - 1
+    return highest_power(chain, top) - 1
+
+
+def highest_power(chain: Chain, top: int) -> int:
+    """The highest power of a force up to a degree, 2 of none; at least that where V has no end."""
+    last = chain.potential.degree
+    if last is None:
+        return max(top, 2)
+    return max(chain.relative_couplings(min(top, last - 1)), default=2)
 
 
 def force_of(ring: Any, chain: Chain, top: int) -> Force:

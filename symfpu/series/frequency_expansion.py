@@ -26,31 +26,30 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from fractions import Fraction
-from functools import partial
-from itertools import count, pairwise, product
+from itertools import count, product
 from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
 import symengine as se
 
-from symfpu.algebra.formulas import Multiplier, NodeTable
 from symfpu.algebra.quotients import monomials_of, quotient_field
 from symfpu.algebra.selection import fold
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.length import label_entry, mode_label, mode_of
 from symfpu.chain.symbols import amplitude_symbol, linear_symbol
 from symfpu.errors import InputError
-from symfpu.numbers.typed import integer
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import order_of
 from symfpu.series.all_lengths import SeriesForAllN, reach
+from symfpu.series.expanded import ExpandedSeries, driven_modes
 from symfpu.series.lindstedt import lindstedt
-from symfpu.series.power_series import PowerSeries
 from symfpu.series.series import LindstedtSeries
 
 MOST_SEEDS = 2
 
 
+@public
 def frequency_expansion(
     chain: Chain, seeds: Sequence[int | str], q: int | str, order: int
 ) -> Any:
@@ -81,7 +80,7 @@ def frequency_expansion(
     (1/4)*A1**2*(4 - 3*Omega_1**2)*Omega_1 + (1/2)*(-4 + Omega_1**2)*Omega_1*A_{N-1}**2
     """
     require_chain(chain)
-    order = integer(order, "order", 0)
+    order = order_of(order)
     start = lindstedt(chain, seeds, order=0, ring="nested")
     if len(start.seeds) > MOST_SEEDS:
         allowed = f"at most {MOST_SEEDS} for a closed form"
@@ -235,8 +234,8 @@ class _Element:
         return self._with(number * self.a / norm, -number * self.b / norm)
 
 
-class _Expanded(ABC):
-    """The recursion's nodes with divisors expanded in mu, over a field that subclasses choose.
+class _Frequencies(ABC):
+    """Linear frequencies of a universal series over a field that subclasses choose.
 
     series : universal. names : of its seeds in the formula. one : of the field. linear : Omega_q
     of the seeds.
@@ -246,7 +245,7 @@ class _Expanded(ABC):
     linear: Sequence[Any]
 
     def __init__(self, series: LindstedtSeries, names: Sequence[int]) -> None:
-        self.series, self.seeds, self.names = series, series.seeds, names
+        self.series, self.names = series, names
 
     @abstractmethod
     def linear_square(self, q: int) -> Any:
@@ -256,96 +255,27 @@ class _Expanded(ABC):
     def expression(self, value: Any, place: int) -> Any:
         """An element of the field times Omega_q of a seed, as an expression."""
 
-    def _frequencies(self) -> dict[tuple[int, ...], list[PowerSeries]]:
-        """omega_i / Omega_i as series in mu, at A_1^2 = 1 and several A_2^2."""
-        order = self.series.order
-        points: list[tuple[int, ...]] = [(1,)]
-        if len(self.seeds) == MOST_SEEDS:
-            points = [(1, t) for t in range(order * self.series.chain.degree_step // 2 + 1)]
-        return {point: self._at(point) for point in points}
-
-    def _at(self, point: tuple[int, ...]) -> list[PowerSeries]:
-        """At these squared amplitudes."""
-        order, one = self.series.order, self.one
-        roots = [PowerSeries([one]) for _ in self.seeds]
-        for k in range(1, order + 1):
-            squares = self._squared(roots, point, k)
-            roots = [square.root() for square in squares]
-        return roots
-
-    def _squared(
-        self, roots: Sequence[PowerSeries], point: Sequence[int], order: int
-    ) -> list[PowerSeries]:
-        """(omega_i / Omega_i)^2 to an order, from frequencies to the order before."""
-        sums = [[self.one, *[self.one * 0] * order] for _ in self.seeds]
-        for k in range(1, order + 1):
-            table = self.series.corrections[k]
-            if not len(table):
-                continue
-            # W^(k) enters with mu^k, and needs its divisors to mu^(order - k)
-            cut = [root.cut(order - k + 1) for root in roots]
-            values = self._values(table, cut)
-            monomials = self._monomials(k, point)
-            for i, column in enumerate(values.T):
-                for value, monomial in zip(column, monomials, strict=True):
-                    for n, c in enumerate(_coefficients(value)):
-                        sums[i][k + n] = sums[i][k + n] + c * monomial
-        return list(map(PowerSeries, sums))
-
-    def _monomials(self, order: int, point: Sequence[int]) -> list[Any]:
-        """The products of |w_i|^2 = W_i A_i^2 / 4 of the rows of a table of corrections."""
-        diagonal = self.series.grading.diagonal(self.series.chain.degree_step * order)
-        found = []
-        for row in diagonal.tolist():
-            value = self.one
-            for e, linear, square in zip(row, self.linear, point, strict=True):
-                value = prod([linear * linear * square / 4] * e, start=value)
-            found.append(value)
-        return found
-
-    def _values(self, table: NodeTable, roots: Sequence[PowerSeries]) -> Any:
-        def coupling(value: Fraction) -> PowerSeries:
-            number = self.one * value.numerator / value.denominator
-            return PowerSeries([number, *[0] * (len(roots[0]) - 1)])
-
-        return table.values(partial(self._multiplier, roots=roots), coupling)
-
-    def _multiplier(self, symbol: Multiplier, roots: Sequence[PowerSeries]) -> PowerSeries:
-        """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2)."""
-        drive: Any = None
-        for n, linear, root in zip(symbol.harmonic, self.linear, roots, strict=True):
-            part = root * (n * linear)
-            drive = part if drive is None else drive + part
-        square = self.linear_square(symbol.mode)
-        base = PowerSeries([square, *[0] * (len(drive) - 1)])
-        if symbol.mode in self.seeds:
-            own = roots[self.seeds.index(symbol.mode)]
-            base = own * own * square
-        divisor: PowerSeries = base - drive * drive
-        multiplier: PowerSeries = divisor.inverse() * square
-        return multiplier
-
     def formula(self, place: int, order: int) -> Any:
         """omega^(k) of a seed as an expression."""
-        values = [
-            roots[place].coefficients[order] for roots in self._frequencies().values()
-        ]
-        half = order * self.series.chain.degree_step
-        if half % 2:
+        top, odd = divmod(order * self.series.chain.degree_step, 2)
+        if odd:
             return se.Integer(0)
-        A = [amplitude_symbol(q) ** 2 for q in self.names]
-        if len(A) == 1:
-            (value,) = values
-            return self.expression(value, place) * A[0] ** (half // 2)
-        terms = []
-        for e, value in enumerate(_interpolated(values)[: half // 2 + 1]):
-            terms.append(
-                self.expression(value, place) * A[0] ** (half // 2 - e) * A[1] ** e
-            )
+        squares = {q: self.linear_square(q) for q in driven_modes(self.series)}
+        expanded = ExpandedSeries(self.series, self.linear, squares, self.one)
+        ratio = expanded.frequency_ratios(top)[place]
+        terms = [self._term(e, c, place) for e, c in ratio.parts[top].items()]
         return se.Add(*terms)
 
+    def _term(self, exponents: Sequence[int], value: Any, place: int) -> Any:
+        """c y^e Omega_q without mu, y_i = (Omega_i A_i / 2)^2."""
+        amplitudes = [se.Integer(1)]
+        for e, q, linear in zip(exponents, self.names, self.linear, strict=True):
+            value = prod([linear * linear / 4] * e, start=value)
+            amplitudes.append(amplitude_symbol(q) ** (2 * e))
+        return self.expression(value, place) * se.Mul(*amplitudes)
 
-class _Closed(_Expanded):
+
+class _Closed(_Frequencies):
     """Over the rational functions of Omega_1, Omega_2, and rho."""
 
     def __init__(self, series: LindstedtSeries, names: Sequence[int]) -> None:
@@ -387,7 +317,7 @@ class _Closed(_Expanded):
         return first + second * rho
 
 
-class _OnOneAngle(_Expanded):
+class _OnOneAngle(_Frequencies):
     """Over the rational functions of 2 sin u and 2 cos u: seeds that obey a relation."""
 
     def __init__(
@@ -455,11 +385,6 @@ def _signed_sums(series: LindstedtSeries) -> dict[int, tuple[int, ...]]:
     return {q: found[mode_of(q, N)] for q in names if mode_of(q, N) in found}
 
 
-def _coefficients(value: Any) -> list[Any]:
-    """Of a series; of a plain number, or of nothing, one."""
-    return value.coefficients if isinstance(value, PowerSeries) else [value]
-
-
 def _chebyshev(c: Any, degree: int) -> tuple[list[Any], list[Any]]:
     """T_0 .. T_degree and U_0 .. U_degree at c."""
     first, second = [c * 0 + 1, c], [c * 0 + 1, 2 * c]
@@ -467,21 +392,6 @@ def _chebyshev(c: Any, degree: int) -> tuple[list[Any], list[Any]]:
         first.append(2 * c * first[-1] - first[-2])
         second.append(2 * c * second[-1] - second[-2])
     return first, second
-
-
-def _interpolated(values: Sequence[Any]) -> list[Any]:
-    """Coefficients of the polynomial with these values at 0, 1, 2, ..., by Newton's differences."""
-    differences, rest = [], list(values)
-    for k in range(len(values)):
-        differences.append(rest[0])
-        rest = [(b - a) / (k + 1) for a, b in pairwise(rest)]
-    found: list[Any] = [differences.pop()]
-    for k in reversed(range(len(differences))):
-        # times (t - k), plus the next difference
-        lowered = [*(-k * c for c in found), 0]
-        raised = [differences[k], *found]
-        found = [a + b for a, b in zip(raised, lowered, strict=True)]
-    return found
 
 
 def _rational(value: Any, symbols: Sequence[Any]) -> Any:

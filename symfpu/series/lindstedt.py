@@ -3,28 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 
-from symfpu.chain.chain import Chain, require_chain
+from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
-from symfpu.numbers.typed import Number, integer, seed_modes
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, order_of, seed_modes
 from symfpu.series.all_lengths import series_for_all_lengths
 from symfpu.series.arguments import digits_of, frequencies_of
 from symfpu.series.fixed_point import fixed_point_series
 from symfpu.series.memory import check_size
-from symfpu.series.monomials import monomial_space
+from symfpu.series.monomials import monomial_space, wave_space
 from symfpu.series.recursion import named_series
-from symfpu.series.rings import BY_NAME, RINGS, Frequencies
+from symfpu.series.rings import BY_NAME, FLOAT64, RINGS, Frequencies
 from symfpu.series.series import LindstedtSeries
 
+Chosen = Sequence[Number] | Mapping[int, Number]
 UNIVERSAL = tuple(name for name in BY_NAME if not RINGS[name].numeric)
 ADVICE = "put a number for N: chain.at(N=32)"
 
 
+@public
 def lindstedt(
     chain: Chain,
     seeds: Sequence[int | str],
-    frequencies: Sequence[Number] | Mapping[int, Number] | None = None,
+    frequencies: Chosen | None = None,
     order: int = 0,
     *,
     ring: str | None = None,
@@ -33,12 +37,15 @@ def lindstedt(
 ) -> LindstedtSeries:
     """The Poincare-Lindstedt series of a q-torus with free seed amplitudes (section 3.1).
 
-    The series are those of Eqs. qser and omeser.
+    The series are those of Eqs. qser and omeser. On a ring they are of travelling waves.
 
     chain : the model; frequencies, amplitudes and times are in its units, dimensionless. With
         Chain("N", ...) the universal series of every N at once: valid_from is the N from which it
-        holds, at_length(N) that of one chain.
-    seeds : distinct modes D_0; where N is a symbol also 'N-1', 'N-2', ...
+        holds, at_length(N) that of one chain. With ends="periodic" the series of travelling waves,
+        ours, in doubles.
+    seeds : distinct modes D_0; where N is a symbol also 'N-1', 'N-2', ... On a ring they are
+        signed, and q and -q are two waves. The series of fixed ends has them ascending, that of a
+        ring as given.
     frequencies : omega_q of each seed, exact numbers, shape (s,) or by seed; a float is read by
         its shortest decimal, so 0.33 is exactly 33/100. None gives the universal form with symbols
         L_q(nu).
@@ -54,19 +61,28 @@ def lindstedt(
     Differs from the paper: both couplings may act, mu is then alpha/sqrt(2N), and omega^(k) has
     degree k (alpha), 2k (beta) in the amplitudes, one less than printed.
     Raises InputError for arguments out of range, TooLarge before allocating what would not fit
-    into memory, ResonantDivisor at the first divisor that is zero.
+    into memory, ResonantDivisor at the first divisor that is zero. On a ring it may be zero for the
+    linear frequencies too, as 2 omega_(-q) - omega_q with mode q at q = N/4. What to do then is in
+    the message and in docs/chains.md.
 
     >>> series = lindstedt(Chain(N=8, alpha="0.25"), seeds=(1,), order=1)
     >>> series.coordinates[1][-1, 1], series.coordinates[1][-1, 0]
     (-L_{2}(2), 0)
+    >>> waves = lindstedt(Chain(N=8, beta=1, ends="periodic"), (1,), ("0.8",), 1)
+    >>> waves.corrections[1].round(12).tolist()  # omega^2 = Omega^2 (1 + 3 mu |w|^2)
+    [[3.0]]
     """
-    require_chain(chain)
+    if require_any_chain(chain).periodic:
+        known = _known_on_ring(frequencies, ring, digits)
+        modes = chain.seeds_of(seeds)
+        omega = frequencies_of(known, modes)
+        return series_of_waves(chain, modes, omega, order_of(order), progress)
     if chain.symbolic:
         ring = ring or "symbolic"
         _refuse_numbers(frequencies, digits, ring)
         return series_for_all_lengths(chain, seeds, order, ring, progress)
     seeds = seed_modes(seeds, chain.N)
-    order = integer(order, "order", 0)
+    order = order_of(order)
     exact_frequencies = None if frequencies is None else frequencies_of(frequencies, seeds)
     seeds, exact_frequencies = _ascending(seeds, exact_frequencies)
     if digits is not None:
@@ -82,6 +98,42 @@ def lindstedt(
     check_size(chain, seeds, order, ring)
     space = monomial_space(chain, seeds, order)
     return named_series(RINGS[ring], chain, space, exact_frequencies, order, progress)
+
+
+def series_of_waves(
+    chain: Chain,
+    modes: tuple[int, ...],
+    omega: tuple[Fraction, ...],
+    order: int,
+    progress: Progress | None,
+    *,
+    phantom: bool = False,
+) -> LindstedtSeries:
+    """The series on a ring, of checked arguments.
+
+    phantom : whether the first seed's amplitude is needed to its first power only.
+    """
+    check_size(chain, modes, order, FLOAT64.name, phantom=phantom)
+    space = wave_space(chain, modes, order, phantom=phantom)
+    return named_series(FLOAT64, chain, space, omega, order, progress)
+
+
+def _known_on_ring(
+    frequencies: Chosen | None, ring: str | None, digits: int | None
+) -> Chosen:
+    """The frequencies; InputError for what travelling waves do not have."""
+    if frequencies is None:
+        allowed = "one number for each seed where ends='periodic': no universal form"
+        advice = "give frequencies= near the linear ones"
+        raise InputError("frequencies", None, allowed, advice)
+    if ring not in {None, FLOAT64.name}:
+        allowed = f"{FLOAT64.name!r} where ends='periodic'"
+        raise InputError("ring", ring, allowed, "leave it out")
+    if digits is not None:
+        advice = "leave it out; standing waves have digits: Chain(N/2, ...) with fixed ends"
+        allowed = "none where ends='periodic': doubles"
+        raise InputError("digits", digits, allowed, advice)
+    return frequencies
 
 
 def _refuse_numbers(frequencies: object, digits: int | None, ring: str) -> None:

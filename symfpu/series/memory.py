@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import bisect
 import math
 from collections.abc import Sequence
 
@@ -10,11 +11,12 @@ import psutil
 from symfpu.algebra.dense import predicted_bytes
 from symfpu.algebra.program_ring import predicted_bytes as program_bytes
 from symfpu.algebra.residue import PRIME_BITS
-from symfpu.chain.chain import Chain, require_chain
-from symfpu.errors import TooLarge
-from symfpu.numbers.typed import integer, seed_modes
+from symfpu.chain.chain import Chain, require_any_chain, require_fixed_ends
+from symfpu.errors import InputError, TooLarge
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import order_of
 from symfpu.series.arguments import digits_of
-from symfpu.series.force import stored_powers
+from symfpu.series.force import highest_power, stored_powers
 from symfpu.series.rings import RINGS
 from symfpu.series.tables import LOG10_2
 
@@ -23,6 +25,7 @@ EXPECTED_GUARD, EXPECTED_LOSS, MOST_EXPECTED = 20, 0.7, 60
 # series in doubles that the stages before and after a fixed-point series hold, with their radii
 OTHER_STAGES = 6
 CONSTANT_BYTES = 2**24
+MOST_WORK = 10**15  # multiply-adds, which take ten days
 # degree 0 in a phantom seed, or 1 with either sign: three times the monomials of the others, five
 # times their pairs with such a product
 PHANTOM_FACTOR = 5
@@ -47,14 +50,19 @@ def check_size(
     def needed(k: int) -> int:
         return factor * _needed(chain, full, k, ring, digits)
 
-    if needed(order) <= free:
-        return
-    largest = -1
-    while needed(largest + 1) <= free:
-        largest += 1
-    raise TooLarge(order, needed(order), free, largest)
+    def work(k: int) -> int:
+        return factor * _multiply_adds(chain, full, k)
+
+    if needed(order) > free:
+        largest = bisect.bisect_right(range(order), free, key=needed) - 1
+        raise TooLarge(order, needed(order), free, largest)
+    if work(order) > MOST_WORK:
+        largest = bisect.bisect_right(range(order), MOST_WORK, key=work) - 1
+        allowed = f"what takes {MOST_WORK:.0e} multiply-adds ({work(order):.1e} are needed)"
+        raise InputError("order", order, allowed, f"take order {largest} or less")
 
 
+@public
 def series_bytes(
     chain: Chain, seeds: Sequence[int], order: int, *, digits: int | None = None
 ) -> int:
@@ -68,24 +76,34 @@ def series_bytes(
     >>> series_bytes(Chain(N=32, alpha=1), (1, 2, 3, 4), 8)
     24715984
     """
-    require_chain(chain)
-    count = len(seed_modes(seeds, int(chain.N)))
-    last = integer(order, "order", 0)
+    count, last = len(require_any_chain(chain).seeds_of(seeds)), order_of(order)
     if digits is None:
         return _needed(chain, count, last, "float64", 0)
+    require_fixed_ends(chain)
     return _needed(chain, count, last, "fixedpoint", digits_of(digits))
+
+
+def _multiply_adds(chain: Chain, seeds: int, order: int) -> int:
+    """Of one product of two series, about: pairs of monomials, each on half of the bonds."""
+    degree = 1 + chain.degree_step * order
+    return math.comb(degree + 4 * seeds, 4 * seeds) * (_bonds(chain) // 2)
+
+
+def _bonds(chain: Chain) -> int:
+    """N, or 2 on a ring: one column and one value stand for all."""
+    return 2 if chain.periodic else chain.N
 
 
 def _needed(chain: Chain, seeds: int, order: int, ring: str, digits: int) -> int:
     degree = 1 + chain.degree_step * order
     powers = stored_powers(chain, degree, grows=RINGS[ring].grows)
-    size = predicted_bytes(chain.N, seeds, degree, powers=powers)
+    size = predicted_bytes(_bonds(chain), seeds, degree, powers=powers)
     if ring == "fixedpoint":
         guard = EXPECTED_GUARD + min(EXPECTED_LOSS * order, MOST_EXPECTED)
         bits_of_products = (digits + guard) / LOG10_2 * 2
         primes = math.ceil(bits_of_products / (PRIME_BITS - 2))
         return CONSTANT_BYTES + size * (primes + OTHER_STAGES)
     if RINGS[ring].program:
-        highest = max(chain.relative_couplings(degree), default=0)
+        highest = highest_power(chain, degree)
         return size + program_bytes(chain.N, seeds, degree, chain.degree_step, highest)
     return size

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from symfpu.notebook import latex_lines
+from symfpu.numbers.public import public
 
 
+@public
 @dataclass(frozen=True)
 class NamedParts:
     """An expression whose shared parts have names.
@@ -19,11 +21,16 @@ class NamedParts:
     >>> from symfpu import Chain, lindstedt
     >>> parts = lindstedt(Chain(N=8, alpha=1), (1,), order=4).term(5, 4, form="cse")
     >>> parts
-    NamedParts(names=((x0, ...), (x1, ...), (x2, ...), (x3, ...)), expression=...)
+    NamedParts(... where x0 = ..., x1 = ..., x2 = ..., x3 = ...)
     """
 
     names: tuple[tuple[Any, Any], ...]
     expression: Any
+
+    def __repr__(self) -> str:
+        names = ", ".join(f"{name} = {value}" for name, value in self.names)
+        meaning = f" where {names}" if names else ""
+        return f"NamedParts({self.expression}{meaning})"
 
     def latex(self) -> str:
         """Lines that fit a page: the expression, then what its names stand for."""

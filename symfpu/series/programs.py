@@ -57,8 +57,8 @@ def program_members(body: Json) -> dict[str, Member]:
     lengths = {"program_start": nodes + 1}
     lengths |= {f"program_{name}": terms for name in Terms._fields}
     types = layout["integers"]
-    if isinstance(types, str):  # of files before schema 4: the same for all
-        types = dict.fromkeys(lengths, types)
+    if not isinstance(types, dict):
+        raise ValueError(f"no kind of integers for each array: {types!r:.40}")
     for dtype in types.values():
         if dtype not in INTEGERS:
             raise ValueError(f"no kind of integers: {dtype!r:.40}")

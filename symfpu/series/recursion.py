@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from symfpu.algebra.ring import Ring
-from symfpu.algebra.selection import CosineModes
+from symfpu.algebra.selection import Modes
 from symfpu.chain.chain import Chain
 from symfpu.files.progress import Progress
 from symfpu.series.divisors import Divisors
@@ -73,7 +73,7 @@ def ring_series(
 def named_series(
     kind: RingKind,
     chain: Chain,
-    space: CosineModes,
+    space: Modes,
     frequencies: Frequencies,
     order: int,
     progress: Progress | None,

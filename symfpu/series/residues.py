@@ -8,7 +8,7 @@ from dataclasses import replace
 from symfpu.algebra.residue import ResidueRing
 from symfpu.chain.chain import Chain
 from symfpu.files.progress import Progress
-from symfpu.numbers.typed import integer, seed_modes
+from symfpu.numbers.typed import order_of, seed_modes
 from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.divisors import ResidueDivisors
 from symfpu.series.memory import check_size
@@ -34,9 +34,9 @@ def residue_series(
     modulo the prime, TooLarge as `lindstedt` does.
     """
     seeds = tuple(sorted(seed_modes(seeds, chain.N)))
-    check_size(chain, seeds, integer(order, "order", 0), "residue")
+    check_size(chain, seeds, order_of(order), "residue")
     space = monomial_space(chain, seeds, order)
     ring = ResidueRing(space, point.prime, point.root, workers=workers)
-    divisors = ResidueDivisors(chain, seeds, ring, point.frequencies)
+    divisors = ResidueDivisors(chain, space, ring, point.frequencies)
     series = ring_series(chain, None, order, ring, divisors, progress)
     return replace(series, point=point)

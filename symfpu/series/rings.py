@@ -10,11 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
+from typing import Any
 
 from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.program_ring import ProgramRing
 from symfpu.algebra.ring import Ring
-from symfpu.algebra.selection import CosineModes
+from symfpu.algebra.selection import CosineModes, Modes
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.series.divisors import Divisors, Float64Divisors, UniversalDivisors
@@ -27,8 +28,9 @@ Frequencies = tuple[Fraction, ...] | None
 class RingKind:
     """A ring that series are made over.
 
-    tables : of its coefficients, from digits and bits. ring, divisors : how they are made; None
-    where that takes more than a name: residues want a point, fixed-point numbers their precision.
+    tables : of its coefficients, from digits and bits. ring, divisors : how they are made, from the
+    modes of fixed ends (doubles: of a ring, too); None where that takes more than a name: residues
+    want a point, fixed-point numbers their precision.
     numeric, exact_point : whether a series has frequencies, or a point where its residues were
         taken. program : whether it keeps coefficients as a program. grows : whether it is a
         GrowingRing.
@@ -36,23 +38,21 @@ class RingKind:
 
     name: str
     tables: Callable[[int | None, int], Tables]
-    ring: Callable[[CosineModes], Ring] | None = None
-    divisors: Callable[[Chain, CosineModes, Frequencies], Divisors] | None = None
+    ring: Callable[[Any], Ring] | None = None
+    divisors: Callable[[Chain, Any, Frequencies], Divisors] | None = None
     numeric: bool = False
     exact_point: bool = False
     program: bool = False
     grows: bool = False
 
 
-def _double_divisors(
-    chain: Chain, space: CosineModes, frequencies: Frequencies
-) -> Divisors:
+def _double_divisors(chain: Chain, space: Modes, frequencies: Frequencies) -> Divisors:
     chosen = chosen_frequencies(frequencies, "float64")
-    return Float64Divisors(chain, space.seeds, chosen, space.grading.degree)
+    return Float64Divisors(chain, space, chosen)
 
 
 def _universal_divisors(chain: Chain, space: CosineModes, _: Frequencies) -> Divisors:
-    return UniversalDivisors(chain, space.seeds)
+    return UniversalDivisors(space)
 
 
 def _double_tables(digits: int | None, bits: int) -> Tables:

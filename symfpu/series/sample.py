@@ -15,7 +15,7 @@ import numpy as np
 import psutil
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.algebra.formulas import Coupling, Multiplier
+from symfpu.algebra.formulas import Multiplier
 from symfpu.algebra.program import Program
 from symfpu.algebra.program_values import tabled, tangents_in_doubles, values_in_doubles
 from symfpu.errors import InputError
@@ -23,7 +23,9 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.table import Column, Table
 from symfpu.frames.tabled import Gridded, Tabled
+from symfpu.numbers.arithmetic import DOUBLES
 from symfpu.numbers.counted import counted
+from symfpu.numbers.public import public
 from symfpu.series.coefficient_table import (
     COORDINATE,
     Part,
@@ -86,56 +88,7 @@ class FrequencyChanges(Gridded):
         )
 
 
-@dataclass(frozen=True)
-class EnergyChanges(Gridded):
-    """Average mode energies of the tori with given amplitudes, and derivatives, at P points.
-
-    Made by `SampledSeries`; dimensionless. Ours.
-
-    energies : infinite-time averages of E_q (Eq. harmonicene), (P, N-1). by_amplitudes :
-        d E_q / d A_j, (P, N-1, s). by_frequencies : d E_q / d omega_j, (P, N-1, s).
-
-    >>> from symfpu import Chain, lindstedt, sample_series
-    >>> series = lindstedt(Chain(N=8, beta=1), (1,), order=1)
-    >>> sample_series(series, [[0.4], [0.41]]).energies_at([0.1])
-    EnergyChanges(2 points, sum of the first 0.00078060...)
-    >>> sample_series(series, [[0.4], [0.41]]).energies_at([0.1]).to_frame().shape
-    (14, 6)
-    """
-
-    energies: Floats
-    by_amplitudes: Floats
-    by_frequencies: Floats
-
-    def __repr__(self) -> str:
-        total = self.energies[0].sum()
-        points = counted(len(self.energies), "point")
-        return f"EnergyChanges({points}, sum of the first {total:.12g})"
-
-    def _grid(self) -> Grid:
-        points, modes, seeds = self.by_amplitudes.shape
-        changes = "derivative of the energy by"
-        both = ("point", "mode", "by")
-        return Grid(
-            axes={
-                "point": range(points),
-                "mode": range(1, modes + 1),
-                "by": range(1, seeds + 1),
-            },
-            variables={
-                "energy": Variable(both[:2], self.energies, "average energy of a mode"),
-                "by_amplitude": Variable(
-                    both, self.by_amplitudes, f"{changes} an amplitude"
-                ),
-                "by_frequency": Variable(
-                    both, self.by_frequencies, f"{changes} a frequency"
-                ),
-            },
-            attributes=attributes(self),
-            rows=both,
-        )
-
-
+@public
 @dataclass(frozen=True, eq=False)
 class SampledSeries(Tabled):
     """A universal series at P points: tables of numbers with the point as last axis.
@@ -188,14 +141,6 @@ class SampledSeries(Tabled):
         q : a seed; InputError for other modes.
         """
         return self._tables(self._by_frequency[self._place(q)])
-
-    def derivatives_by_coupling(self) -> tuple[Tables, Tables]:
-        """Derivatives of `coordinates` and of `corrections` by the relative coupling."""
-        leaves = np.zeros_like(self._leaves)
-        for number, symbol in enumerate(self._program.symbols):
-            if isinstance(symbol, Coupling):
-                leaves[number] = 1.0
-        return self._tables(tangents_in_doubles(self._program, self.values, leaves))
 
     def _place(self, q: int) -> int:
         if q not in self.series.seeds:
@@ -260,40 +205,9 @@ class SampledSeries(Tabled):
             np.stack(by_frequencies, axis=2),
         )
 
-    def energies_at(self, amplitudes: ArrayLike) -> EnergyChanges:
-        """The average mode energies of these amplitudes (Eq. harmonicene), and derivatives.
-
-        amplitudes : (s,), or (P, s), in the order of the seeds. Raises InputError.
-        """
-        A = self._amplitudes(amplitudes)
-        sums = CosineSums(self.series, A)
-        cosines = sums.of(self.coordinates)
-        energies = self._energies(sums.harmonics, cosines, cosines)
-        by_amplitudes, by_frequencies = [], []
-        for j, values in enumerate(self._by_frequency):
-            moved = sums.of(self.coordinates, by_amplitude=j)
-            by_amplitudes.append(2 * self._energies(sums.harmonics, cosines, moved))
-            changed = sums.of(self._tables(values)[0])
-            rates = 2 * (sums.harmonics @ self.frequencies.T) * sums.harmonics[:, j, None]
-            turned = np.einsum("h,hp,hqp->pq", _averages(sums.harmonics), rates, cosines**2)
-            change = 2 * self._energies(sums.harmonics, cosines, changed)
-            by_frequencies.append(turned + change)
-        return EnergyChanges(
-            energies, np.stack(by_amplitudes, axis=2), np.stack(by_frequencies, axis=2)
-        )
-
-    def _energies(self, harmonics: Ints, left: Floats, right: Floats) -> Floats:
-        """Averages of (P P' + Omega^2 Q Q') / 2 of two motions with these cosines; (P, N-1)."""
-        weights = _averages(harmonics)
-        squares = (harmonics @ self.frequencies.T) ** 2
-        own = self.series.chain.frequencies() ** 2
-        moving = np.einsum("h,hp,hqp,hqp->pq", weights, squares, left, right)
-        resting = np.einsum("h,q,hqp,hqp->pq", weights, own, left, right)
-        return np.asarray(moving + resting)
-
     def _amplitudes(self, amplitudes: ArrayLike) -> Floats:
         """One row for every point; InputError for other shapes."""
-        given, s = np.asarray(amplitudes, dtype=np.float64), self.frequencies.shape[1]
+        given, s = DOUBLES.array(amplitudes), self.frequencies.shape[1]
         if given.shape not in ((s,), self.frequencies.shape):
             allowed = f"the shape {(s,)} or {self.frequencies.shape}"
             raise InputError(
@@ -336,58 +250,6 @@ class SampledSeries(Tabled):
             for i, q in enumerate(seeds):
                 values = own[i] ** 2 * table[:, i, point] * factors
                 yield of_frequency(k, q, exponents, values, squared=True)
-
-
-def _averages(harmonics: Ints) -> Floats:
-    """The averages of half the square of each cosine; (H,)."""
-    return np.asarray(np.where((harmonics != 0).any(axis=1), 0.25, 0.5))
-
-
-class CosineSums:
-    """Sums of tables of coordinates over monomials: cosine coefficients of Q_q, all orders.
-
-    harmonics : those of all orders, (H, s).
-    """
-
-    def __init__(self, series: LindstedtSeries, amplitudes: Floats) -> None:
-        self.series, self.amplitudes = series, amplitudes
-        chain, grading = series.chain, series.grading
-        self.degrees = [series.degree(k) for k in range(series.order + 1)]
-        every = np.concatenate([grading.harmonics(d)[0] for d in self.degrees])
-        _, first = np.unique(grading.harmonic_keys(every), return_index=True)
-        self.harmonics = every[first]
-        self.pairs = np.where((self.harmonics != 0).any(axis=1), 2.0, 1.0)
-        self.kappa = abs(chain.mu) ** (1 / chain.degree_step)
-        linear = chain.frequencies()
-        self.slopes = self.kappa / 2 * linear[np.array(series.seeds) - 1]
-        self.own = linear
-
-    def of(self, tables: Tables, by_amplitude: int | None = None) -> Floats:
-        """Cosines (H, N-1, P), or their derivatives by one amplitude."""
-        keys = self.series.grading.harmonic_keys(self.harmonics)
-        cosines = np.zeros((len(keys), len(self.own), len(self.amplitudes)))
-        for k, (degree, table) in enumerate(zip(self.degrees, tables, strict=True)):
-            nu, index = self.series.grading.harmonics(degree)
-            places = np.searchsorted(keys, self.series.grading.harmonic_keys(nu))[index]
-            sign = -1.0 if self.series.chain.mu < 0 and k % 2 else 1.0
-            monomials = sign * self._monomials(degree, by_amplitude)
-            np.add.at(cosines, places, table * monomials[:, None, :])
-        return np.asarray(
-            cosines * self.pairs[:, None, None] / (self.kappa * self.own[:, None]),
-            dtype=np.float64,
-        )
-
-    def _monomials(self, degree: int, by_amplitude: int | None) -> Floats:
-        """x^e of the canonical monomials, (canonical, P), or their derivatives."""
-        powers = self.series.grading.powers(degree)
-        x = self.slopes * self.amplitudes
-        if by_amplitude is None:
-            return np.asarray(np.prod(x[None] ** powers[:, None, :], axis=2))
-        j = by_amplitude
-        lowered = powers.copy()
-        lowered[:, j] = np.maximum(powers[:, j] - 1, 0)
-        products = np.prod(x[None] ** lowered[:, None, :], axis=2)
-        return np.asarray(powers[:, j, None] * self.slopes[j] * products)
 
 
 class _Monomials:
@@ -439,6 +301,7 @@ def _root_changes(linear: Floats, terms: Floats, changes: list[Floats]) -> Float
     return np.stack(moved)
 
 
+@public
 def sample_series(
     series: LindstedtSeries, frequencies: ArrayLike, relative: ArrayLike | None = None
 ) -> SampledSeries:
@@ -460,7 +323,7 @@ def sample_series(
     """
     require_series(series)
     tables = series.node_tables()
-    chosen = np.asarray(frequencies, dtype=np.float64)
+    chosen = DOUBLES.array(frequencies)
     shape = ("P", len(series.seeds))
     if chosen.ndim != 2 or chosen.shape[1] != shape[1] or not len(chosen):
         advice = "pass a row for every point, a column for every seed"
@@ -489,7 +352,7 @@ def _relative(
     if not both:
         allowed = "None: the chain has one coupling"
         raise InputError("relative", relative, allowed, "leave it out")
-    return np.array(np.broadcast_to(np.asarray(relative, dtype=np.float64), (points,)))
+    return np.array(np.broadcast_to(DOUBLES.array(relative), (points,)))
 
 
 def _require_room(nodes: int, points: int) -> None:

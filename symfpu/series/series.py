@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from symfpu.algebra.formulas import NodeTable, expressions, named_expressions
 from symfpu.algebra.grading import Ints
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError
 from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
@@ -22,6 +22,7 @@ from symfpu.numbers.arithmetic import (
     with_digits,
 )
 from symfpu.numbers.counted import counted
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 from symfpu.series.arguments import digits_of, frequencies_of
 from symfpu.series.coefficient_table import (
@@ -49,8 +50,10 @@ Floats = NDArray[np.float64]
 
 
 FORMS = ("expanded", "factored", "cse")
+RING_TERMS = "the waves of a ring have coefficients(q, order) and to_frame()"
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class LindstedtSeries(SeriesSums, Shown, Tabled):
     """The series Q_q = sum mu^k Q_q^(k) and omega_q = Omega_q + sum mu^k omega_q^(k).
@@ -62,11 +65,20 @@ class LindstedtSeries(SeriesSums, Shown, Tabled):
     u_q = Omega_q Q_q, [omega_q^2]^(k) = Omega_q^2 W_q^(k), without mu; degree d carries the
     factor unit^-(d-1).
 
+    On a ring of N (ours) every seed q is a travelling wave,
+
+        x_j = N^(-1/2) A_q sin(2 pi |q| j / N - sgn(q) theta_q),  theta_q = omega_q t + phi_q,
+
+    which runs to higher j for q > 0. A harmonic nu of the angles lives in one mode, that of nu.q
+    modulo N. So the tables have one column, the real u of
+    r_j = N^(-1/2) sum u cos(nu.(2 pi q (j + 1/2)/N - theta)).
+
     chain, seeds, order : as given. frequencies : omega of every seed, exact, shape (s,); None in
         universal form.
     ring : 'float64', 'fixedpoint', 'residue', 'symbolic' or 'nested'. grading : which monomials
         stand in which row.
-    coordinates : for each order 0 .. order, u_q^(k); shape (canonical monomials, N-1).
+    coordinates : for each order 0 .. order, u_q^(k); shape (canonical monomials, C), C = N-1 modes,
+        or 1 on a ring.
     corrections : for each order 0 .. order, W_q^(k); shape (diagonal monomials, s); no rows where
         none exist.
     unit : the exact unit of amplitudes, which keeps coefficients in the range of doubles.
@@ -94,6 +106,9 @@ class LindstedtSeries(SeriesSums, Shown, Tabled):
     >>> numeric = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 2)
     >>> list(numeric.to_frame())
     ['quantity', 'order', 'mode', 'nu_1', 'power_1', 'value']
+    >>> lindstedt(Chain(N=8, alpha="0.3", ends="periodic"), (1,), ("0.766",), 6)
+    LindstedtSeries(N=8, alpha=0.3, ends='periodic', seeds=1, order 6, 19 coefficients (float64),
+    smallest divisor 0.35 at mode 2, harmonic (2), order 1)
     """
 
     def __repr__(self) -> str:
@@ -149,8 +164,8 @@ class LindstedtSeries(SeriesSums, Shown, Tabled):
             return self._with(
                 chain, found.tables, none, frequencies=chosen, radii=radii, **numeric
             )
-        divisors = Float64Divisors(chain, self.seeds, chosen, self.grading.degree)
         space = monomial_space(chain, self.seeds, self.order)
+        divisors = Float64Divisors(chain, space, chosen)
         leaves = leaves_in_doubles(tables[0].program, chain, space, divisors, self.order)
         values = [table[..., 0] for table in tables_in_doubles(tables, leaves)]
         smallest = divisors.smallest()
@@ -223,6 +238,7 @@ class LindstedtSeries(SeriesSums, Shown, Tabled):
         >>> len(parts.names), parts.names[1]
         (4, (x1, 2*L_{3}(3)*L_{2}(2)))
         """
+        require_fixed_ends(self.chain, RING_TERMS)
         if form is None:
             return self._term(*self.coefficients(q, order))
         if form not in FORMS:
@@ -314,10 +330,33 @@ class LindstedtSeries(SeriesSums, Shown, Tabled):
 
 
 def require_series(series: object) -> None:
-    """InputError for what is no LindstedtSeries."""
+    """InputError for what is no LindstedtSeries of a chain with fixed ends.
+
+    What takes that of a ring too asks `require_any_series`.
+    """
+    chain = require_any_series(series).chain
+    if chain.periodic:
+        allowed = "the series of a chain with fixed ends: this is not known on a ring"
+        advice = "waves of a ring have solve_amplitudes(series)"
+        raise InputError("series", f"of {chain!r}", allowed, advice)
+
+
+def require_waves(series: object) -> LindstedtSeries:
+    """InputError for what is no LindstedtSeries of a ring."""
+    found = require_any_series(series)
+    if not found.chain.periodic:
+        allowed = "the series of a chain with ends='periodic'"
+        advice = "make one with lindstedt; fixed ends have solve_amplitudes(series)"
+        raise InputError("series", f"of {found.chain!r}", allowed, advice)
+    return found
+
+
+def require_any_series(series: object) -> LindstedtSeries:
+    """InputError for what is no LindstedtSeries, whatever the ends of its chain."""
     if not isinstance(series, LindstedtSeries):
-        advice = "pass what lindstedt gave; waves of a ring have travelling_torus(series)"
+        advice = "pass what lindstedt gave"
         raise InputError("series", type(series).__name__, "a LindstedtSeries", advice)
+    return series
 
 
 def _monomial(variables: list[Any], powers: list[int]) -> Any:

@@ -230,7 +230,7 @@ def leaves_in_balls(
             )
             divisor = (base - drive) * (base + drive)
             if divisor.contains(0):
-                exact = vanishes(chain.N, seeds, omega, mode, harmonic)
+                exact = vanishes(chain, seeds, omega, mode, harmonic)
                 raise ResonantDivisor(mode, tuple(harmonic), seeds, order, exact=exact)
             leaves[number] = own * own / divisor
     for number, value in couplings_of(program, chain):

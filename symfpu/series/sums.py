@@ -20,19 +20,24 @@ from symfpu.algebra.polynomials import (
     rescaled,
     square_root,
 )
+from symfpu.chain.chain import linear_by_wave
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import (
+    DOUBLES,
     MULTIPRECISION,
+    Arithmetic,
     Numbers,
     integers,
     with_digits,
 )
 from symfpu.numbers.mpfr import MPFR, at_the_face, in_mpf, scaled_integers
+from symfpu.numbers.public import public
 from symfpu.series.coefficients import SeriesCoefficients
 
 Floats = NDArray[np.float64]
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class SeriesSums(SeriesCoefficients):
     """A series whose frequencies are chosen, summed."""
@@ -57,8 +62,7 @@ class SeriesSums(SeriesCoefficients):
     @cached_property
     def seed_factors(self) -> Numbers:
         """kappa Omega_i / 2: the scaled variables x_i at unit amplitudes; shape (s,)."""
-        linear = self.chain.frequencies(self.numbers)[np.array(self.seeds) - 1]
-        factors = self._kappa / 2 * linear
+        factors = self._kappa / 2 * self._linear_of_seeds(self.numbers)
         return with_digits(np.asarray(factors), self.digits)
 
     def scaled_seeds(self, amplitudes: ArrayLike) -> Numbers:
@@ -73,14 +77,14 @@ class SeriesSums(SeriesCoefficients):
         The sum over rows of value[., q] x^e cos(nu.theta), x = scaled_seeds(A).
 
         The summands of Eq. serabs1, for any seeds. Returns harmonics nu (R, s), exponents e (R,
-        s) and values (R, N-1), one row for each canonical monomial.
+        s) and values (R, C), one row for each canonical monomial, columns as `harmonic_terms` has.
         """
         self._numeric()
         degree = self.degree(order)
         nu, index = self.grading.harmonics(degree)
         with self._context():
             factor = self._sign(order) / self._kappa
-            linear = self.chain.frequencies(self.numbers)
+            linear = self._linear_of(nu[index], self.numbers)
             values = self.tables.entries(self.coordinates[order]) * factor / linear
             oscillates = (nu != 0).any(axis=1)
             values[oscillates[index]] *= 2
@@ -95,7 +99,9 @@ class SeriesSums(SeriesCoefficients):
 
         The sums in brackets of Eq. serabs1, for any seeds. amplitudes : (s,) in the order of the
         seeds.
-        Returns harmonics (H, s), one of each pair +-nu, and values (H, N-1).
+        Returns harmonics (H, s), one of each pair +-nu, and values (H, C), C = N-1 modes, or 1 on a
+        ring: c of the wave of wave number m = nu.seeds, which moves the particles by
+        x_j = N^(-1/2) c sgn(sin(pi m/N)) sin(2 pi m j/N - nu.theta).
         absolute : take the modulus of every monomial before they are summed (for S_1 of Eq.
         serabs2); always doubles.
         """
@@ -115,23 +121,42 @@ class SeriesSums(SeriesCoefficients):
             allowed = f"one for each of the seeds {self.seeds}"
             raise InputError("amplitudes", shape, allowed, "pass a sequence in their order")
         nu, index = self.grading.harmonics(self.degree(order))
-        by_harmonic = np.argsort(index, kind="stable")
-        starts = np.searchsorted(index[by_harmonic], np.arange(len(nu)))
         oscillates = (nu != 0).any(axis=1)
         with self._context():
             factor = self._sign(order) / self._kappa
             if absolute or self.digits is None:
-                table = self._doubles(amplitudes, order)[by_harmonic]
+                table = self._doubles(amplitudes, order)
                 summands = np.abs(table) if absolute else table
-                values = np.add.reduceat(summands, starts, axis=0)
-                values = values * float(factor) / self.chain.frequencies()
+                values = _summed(summands, index, len(nu))
+                values = values * float(factor) / self._linear_of(nu, DOUBLES)
             else:
                 whole, exponent = self._integers(amplitudes, order)
-                sums = np.add.reduceat(whole[by_harmonic], starts, axis=0)
-                linear = MPFR.array(self.chain.frequencies(MULTIPRECISION))
+                sums = _summed(whole, index, len(nu))
+                linear = MPFR.array(self._linear_of(nu, MULTIPRECISION))
                 values = scaled_integers(sums, exponent) * MPFR.array(factor)[()] / linear
             values[oscillates] *= 2
         return nu, np.abs(values) if absolute else values
+
+    def _linear_of(self, harmonics: Ints, numbers: Arithmetic) -> Numbers:
+        """Omega of every coefficient at harmonics (H, s), (H | 1, C); 1 where nothing moves."""
+        waves = self.space.wave_numbers(harmonics)
+        if numbers is DOUBLES:
+            return self._divided_by[waves]
+        moving = [self.chain.linear_frequency(m) for m in range(1, self.chain.N)]
+        return np.asarray(np.array([mpmath.mpf(1), *moving])[waves])
+
+    @cached_property
+    def _divided_by(self) -> Floats:
+        """Omega by wave number in doubles; 1 for the one that does not move."""
+        linear = linear_by_wave(self.chain.N, self.chain.ends)
+        return np.where(linear == 0, 1.0, linear)
+
+    def _linear_of_seeds(self, numbers: Arithmetic) -> Numbers:
+        """Omega of the seeds, (s,)."""
+        waves = np.array(self.seeds) % self.chain.N
+        if numbers is DOUBLES:
+            return np.asarray(linear_by_wave(self.chain.N, self.chain.ends)[waves])
+        return numbers.array([self.chain.linear_frequency(q) for q in self.seeds])
 
     def _doubles(self, amplitudes: ArrayLike, order: int) -> Floats:
         """Every coefficient of an order times its monomial, as doubles."""
@@ -163,19 +188,18 @@ class SeriesSums(SeriesCoefficients):
     ) -> tuple[Floats, Floats]:
         """S_1(k) and S_2(k) of Eqs. serabs2 and serabs3 for Q_q^(k), as doubles.
 
-        k = 0 .. order; shapes (order + 1,) each.
+        k = 0 .. order; shapes (order + 1,) each. On a ring of the waves q and -q.
 
         S_1 adds the moduli of all coefficients, S_2 those of the cosines after the monomials of
         one harmonic are summed.
         with_mu : sums of mu^k Q_q^(k) instead, which cannot leave the range of doubles.
         """
-        column = self._mode(q) - 1
-        sums = np.empty((2, self.order + 1))
+        mode, sums = self._mode(q), np.empty((2, self.order + 1))
         for k in range(self.order + 1):
             unit = 1.0 if with_mu else abs(self.chain.mu) ** -float(k)
             for row, absolute in enumerate((True, False)):
-                _, values = self.harmonic_terms(amplitudes, k, absolute=absolute)
-                moduli = np.abs(values[:, column])
+                nu, values = self.harmonic_terms(amplitudes, k, absolute=absolute)
+                moduli = np.abs(values[self.space.in_mode(mode, nu)])
                 sums[row, k] = unit * float(moduli.sum())
         return sums[0], sums[1]
 
@@ -186,11 +210,12 @@ class SeriesSums(SeriesCoefficients):
 
         squared_amplitudes : (s,). Returns terms (order + 1, s), order 0 being Omega_q, and
         derivatives (order + 1, s, s) with the last axis for the variable.
+        Beyond the range of doubles they are infinite or NaN.
         """
         self._numeric()
         top = self.order if order is None else self._order(order)
         if self.digits is None:
-            squares = np.asarray(squared_amplitudes, dtype=float)
+            squares = one_of_each(self.seeds, squared_amplitudes, "squared_amplitudes")
             return self._frequency_doubles(squares, top)
         with self._context():
             point = list(MPFR.array(self.numbers.array(squared_amplitudes)))
@@ -226,7 +251,7 @@ class SeriesSums(SeriesCoefficients):
         return [list(row) for row in zip(*by_seed, strict=True)]
 
     def _frequency_doubles(self, squares: Floats, top: int) -> tuple[Floats, Floats]:
-        linear = self.chain.frequencies()[np.array(self.seeds) - 1]
+        linear = self._linear_of_seeds(DOUBLES)
         slope = self.seed_factors**2
         diagonals, tables = self._frequency_tables
         return frequency_sums(linear, slope, squares, diagonals[:top], tables[:top])
@@ -237,6 +262,24 @@ class SeriesSums(SeriesCoefficients):
         orders = range(1, self.order + 1)
         diagonals = [self.grading.diagonal(self.chain.degree_step * k) for k in orders]
         return diagonals, [self._sign(k) * self.corrections[k] for k in orders]
+
+
+def _summed(table: NDArray[Any], index: Ints, count: int) -> NDArray[Any]:
+    """Sums of the rows of a table that have the same index, (count, C)."""
+    if table.shape[1] == 1 and table.dtype == float:
+        return np.bincount(index, table[:, 0], count)[:, None]
+    order = np.argsort(index, kind="stable")
+    starts = np.searchsorted(index[order], np.arange(count))
+    return np.asarray(np.add.reduceat(table[order], starts, axis=0))
+
+
+def one_of_each(seeds: tuple[int, ...], values: ArrayLike, argument: str) -> Floats:
+    """Doubles in the order of the seeds, shape (s,); InputError for another shape."""
+    array = DOUBLES.array(values)
+    if array.shape != (len(seeds),):
+        allowed = f"one for each of the seeds {seeds}"
+        raise InputError(argument, array.shape, allowed, "pass a sequence in their order")
+    return array
 
 
 def frequency_sums(

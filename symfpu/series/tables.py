@@ -19,7 +19,7 @@ from symfpu.algebra.formulas import NodeTable
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.program import ZERO
 from symfpu.algebra.words import IntegerTable
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, linear_by_wave
 from symfpu.errors import SymfpuError
 from symfpu.numbers.arithmetic import (
     DOUBLES,
@@ -29,7 +29,6 @@ from symfpu.numbers.arithmetic import (
     from_integers,
 )
 from symfpu.numbers.typed import integer
-from symfpu.series.expressions import expressions_of
 from symfpu.series.programs import Member, program_entries, program_from, program_members
 
 Array = NDArray[Any]
@@ -138,7 +137,7 @@ class DoubleTables:
 
     def linear(self, chain: Chain, q: int) -> Any:
         """Omega_q."""
-        return chain.frequencies()[q - 1]
+        return linear_by_wave(chain.N, chain.ends)[q % chain.N]
 
     def entries(self, table: Any, columns: Any = slice(None)) -> Array:
         """As they are."""
@@ -194,7 +193,9 @@ class DoubleTables:
         return {}
 
     def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
-        """As they are."""
+        """As they are, and finite."""
+        if not all(np.isfinite(array).all() for array in arrays):
+            raise ValueError("a coefficient is not finite")
         return list(map(np.asarray, arrays))
 
 
@@ -219,7 +220,7 @@ class FixedPointTables:
 
     def linear(self, chain: Chain, q: int) -> Any:
         """Omega_q at the working precision."""
-        return chain.frequencies(MULTIPRECISION)[q - 1]
+        return chain.linear_frequency(q)
 
     def entries(self, table: IntegerTable, columns: Any = slice(None)) -> Array:
         """mpf at the working precision."""
@@ -364,25 +365,15 @@ class ExpressionTables:
 
     def members(self, body: Json) -> dict[str, Member]:
         """Those of the program."""
-        return {} if "expressions" in body else program_members(body)
+        return program_members(body)
 
     def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
-        """Tables of nodes; of files of version 0.1, of expressions out of a list."""
-        if "expressions" in body:
-            return _unpacked_expressions(arrays, body)
+        """Tables of nodes."""
         program = program_from(body, members)
         for nodes in arrays:
             if nodes.size and not ZERO <= nodes.min() <= nodes.max() < program.size:
                 raise ValueError("a coefficient is no node of the program")
         return [NodeTable(program, nodes, expanded=self.expanded) for nodes in arrays]
-
-
-def _unpacked_expressions(arrays: Sequence[Array], body: Json) -> list[Any]:
-    expressions = expressions_of(body["expressions"])
-    for places in arrays:
-        if places.size and not 0 <= places.min() <= places.max() < len(expressions):
-            raise ValueError("a coefficient is none of the expressions")
-    return [np.asarray(expressions[places]) for places in arrays]
 
 
 def multiplied(values: Array, linear: Sequence[Any], powers: Ints, scale: Any) -> Numbers:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +19,13 @@ from symfpu.frames.table import Column, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, part
 from symfpu.spectral.channels import SPAN, Channel, ChannelBank
 from symfpu.spectral.combinations import Basis
-from symfpu.spectral.record import LINE_WIDTH, Exponential, Record
+from symfpu.spectral.record import LINE_WIDTH, Exponential, Record, one_constant
 from symfpu.spectral.samples import Samples
+from symfpu.spectral.scheme_shift import scheme_shifts
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[Any]
@@ -36,8 +38,15 @@ LEAST_VALUES = 16  # of a channel
 MIRROR = 12  # turns over a channel's window between a line and its mirror image, at least
 ROUNDING = 16 * float(np.finfo(float).eps)  # of a mode's coordinate along an orbit
 EPS = float(np.finfo(float).eps)
+# of a turn: a line that windows see so far apart has unseen ones within its width; and how far a
+# line may be off, in what windows differ by, there and elsewhere
+UNCLEAN, OF_UNCLEAN, OF_CLEAN = 0.003, 8.0, 2.0
+# of the distance to a stronger line: what is left of that one moves with the window, a third of it
+MOVING = 0.05
+CONSTANT = 0.25  # of a turn: what windows see of a constant, above which it is a slow line
 HALF = 0.5  # of a frequency: named so far from where it was seen, a line is an image
-PARTS = ((0.0, 0.75), (0.25, 1.0))  # of the record, whose difference is the error
+# of the record: what lines of these differ by, and from those of the whole, is their error
+PARTS = ((0.0, 0.75), (0.125, 0.875), (0.25, 1.0))
 
 
 @dataclass(frozen=True)
@@ -45,8 +54,8 @@ class SpectralLine:
     """A cos(f t + phi) in the coordinate of one mode. Made by `frequency_analysis`; ours.
 
     mode : q. frequency : f >= 0, dimensionless. amplitude : A > 0, dimensionless.
-    phase : phi at time 0, in radians. error : of the frequency, what two windows of three
-        quarters of the time differ by, and rounding.
+    phase : phi at time 0, in radians. error : of the frequency: of the analysis, of the scheme
+        of the orbit with its step, and of rounding.
     harmonic : nu with f = nu.omega, as the independent frequencies stand; None where no
         combination is beyond accident. Such a line may be the image, below pi a sample, of one
         above it.
@@ -71,13 +80,14 @@ class SpectralLine:
         return f"SpectralLine(mode {self.mode}: {rate}, {size}, nu={name})"
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class FrequencyAnalysis(Shown, Tabled):
     """The lines of an orbit. Made by `frequency_analysis` (Laskar's method); dimensionless, ours.
 
     chain : the model. T : the length of the orbit.
     seeds : the modes that name the independent frequencies: those of their strongest lines.
-    frequencies, errors : the independent frequencies, and what two windows differ by; (s,).
+    frequencies, errors : the independent frequencies, and theirs as of a line; (s,).
     actions : half the sum of nu_i (nu.omega) A^2 over the identified lines; (s,).
     strengths : f A of the strongest line of each, as part of the largest; (s,), falling.
     lines : of all modes, the strongest of each first.
@@ -153,6 +163,7 @@ class FrequencyAnalysis(Shown, Tabled):
         return Table(columns, attributes(self, self.chain, T=self.T, seeds=self.seeds))
 
 
+@public
 def frequency_analysis(
     orbit: Orbit,
     *,
@@ -175,7 +186,8 @@ def frequency_analysis(
     Laskar's method with the window (1 + cos)^3; lines of one mode are found one after the other
     and then all anew until none moves. Long orbits go through narrow channels around the lines of
     their beginning. Lines nearer to each other than 4 turns over the time are not told apart.
-    A line is a combination of stronger ones if one meets it within the errors and fewer than a
+    A line is a combination of stronger ones if one meets it within four times what windows of the
+    orbit differ by and fewer than a
     hundredth would by accident; else it is an independent frequency, where combinations to order
     3 at least could have been told. Ours; the paper has alignment indices for it.
     Raises InputError, also for an orbit that is shorter than 5.3 turns of its slowest mode: of the
@@ -192,46 +204,61 @@ def frequency_analysis(
     if not 0 < level < 1:
         raise InputError("level", level, "a number between 0 and 1", "take 1e-6")
     samples = Samples(orbit)
+    if parts > samples.count:
+        allowed = f"up to {samples.count}, the samples of the orbit"
+        raise InputError("windows", parts, allowed, "take fewer windows")
     bands = list(_bands(samples, most, level, progress or unheard))
-    found: list[SpectralLine] = []
+    found: list[_Seen] = []
     drifts = np.full((parts, orbit.chain.N - 1), np.nan)
     for mode, own in _moving(bands, most, level).items():
-        found += _kept([line for line, _ in own[:most]], level, samples.T)
-        drifts[:, mode] = own[0][1].in_windows(parts, own[0][0].frequency)
+        found += _kept(own[:most], level, samples.T)
+        drifts[:, mode] = own[0].band.in_windows(parts, own[0].line.frequency)
     rate = 2 * math.pi / samples.interval
-    return _identified(orbit.chain, samples.T, rate, found, drifts)
+    named = _identified(orbit.chain, samples.T, rate, found, drifts)
+    return _with_scheme(named, samples)
 
 
-def _moving(
-    bands: list[_Band], most: int, level: float
-) -> dict[int, list[tuple[SpectralLine, _Band]]]:
+class _Seen(NamedTuple):
+    """A line, what windows differ by in it, and where it was found."""
+
+    line: SpectralLine
+    spread: float
+    band: _Band
+
+
+def _moving(bands: list[_Band], most: int, level: float) -> dict[int, list[_Seen]]:
     """Lines by mode, strongest first; not those that rounding leaves of a mode at rest."""
-    by_mode: dict[int, list[tuple[SpectralLine, _Band]]] = {}
+    by_mode: dict[int, list[_Seen]] = {}
     for band in bands:
         by_mode.setdefault(band.mode, []).extend(band.lines(most, level))
     for own in by_mode.values():
-        own.sort(key=lambda pair: -pair[0].amplitude)
-    largest = max((own[0][0].amplitude for own in by_mode.values() if own), default=0.0)
+        own.sort(key=lambda seen: -seen.line.amplitude)
+    largest = max((own[0].line.amplitude for own in by_mode.values() if own), default=0.0)
     return {
         mode: own
         for mode, own in sorted(by_mode.items())
-        if own and own[0][0].amplitude > ROUNDING * largest
+        if own and own[0].line.amplitude > ROUNDING * largest
     }
 
 
-def _kept(lines: list[SpectralLine], level: float, T: float) -> list[SpectralLine]:
+def _kept(lines: list[_Seen], level: float, T: float) -> list[_Seen]:
     """Those of one mode above the level; rounding of the strongest is an error of the weak."""
     if not lines:
         return []
-    strongest = lines[0].amplitude
-    kept = [line for line in lines if line.amplitude > level * strongest]
-    noise = ROUNDING * strongest / T
-    return [replace(line, error=_whole_error(line, noise)) for line in kept]
+    strongest = lines[0].line.amplitude
+    noise = ROUNDING * strongest / float(T)
+    return [
+        _with_rounding(seen, noise)
+        for seen in lines
+        if seen.line.amplitude > level * strongest
+    ]
 
 
-def _whole_error(line: SpectralLine, noise: float) -> float:
+def _with_rounding(seen: _Seen, noise: float) -> _Seen:
     """With the rounding of the orbit, and of the frequency itself."""
-    return line.error + noise / line.amplitude + EPS * line.frequency
+    line, spread, band = seen
+    rounding = noise / line.amplitude + EPS * line.frequency
+    return _Seen(replace(line, error=line.error + rounding), spread + rounding, band)
 
 
 def _require_one_orbit(orbit: Orbit) -> None:
@@ -268,14 +295,16 @@ class _Band:
         lowest = 0.0 if self.record.real else -self.bank.band
         return lowest, self.bank.band
 
-    def lines(self, most: int, level: float) -> Iterator[tuple[SpectralLine, _Band]]:
+    def lines(self, most: int, level: float) -> Iterator[_Seen]:
         """Those nearer to this centre than to another."""
-        found = self.record.settle(self.record.lines(most, level, self._limits()))
-        errors = self._errors(found)
-        for line, error in zip(found, errors, strict=True):
+        lines = self.record.lines(most, level, self._limits())
+        found = one_constant(self.record.settle(lines))
+        spreads = self._spreads(found)
+        errors = self._errors(found, spreads)
+        for line, spread, error in zip(found, spreads, errors, strict=True):
             frequency = self.centre + line.frequency
             if self._is_own(frequency) and abs(line.coefficient) > 0:
-                yield self._line(line, error), self
+                yield _Seen(self._line(line, error), float(spread), self)
 
     def _is_own(self, frequency: float) -> bool:
         own = abs(frequency - self.centre)
@@ -292,14 +321,41 @@ class _Band:
         amplitude, phase = float(twice * abs(value)), float(np.angle(value))
         return SpectralLine(self.mode + 1, frequency, amplitude, phase, error)
 
-    def _errors(self, lines: list[Exponential]) -> list[float]:
-        """The difference of two windows of three quarters of the record."""
+    def _spreads(self, lines: list[Exponential]) -> Floats:
+        """What windows of three quarters of the record and the whole differ by.
+
+        Of a constant, how slow a line may be it: a line that turns less than once over the record
+        looks like one, and its height is another in each window.
+        """
         n = self.record.n
-        both = []
+        all_parts = [[line.frequency for line in lines]]
+        heights = []
         for first, last in PARTS:
             part = self.record.part(int(first * n), int(last * n))
-            both.append(part.settle(self._seen_from(part, int(first * n), lines)))
-        return [abs(a.frequency - b.frequency) for a, b in zip(*both, strict=True)]
+            found = part.settle(self._seen_from(part, int(first * n), lines))
+            all_parts.append([line.frequency for line in found])
+            heights.append([line.coefficient.real for line in found])
+        spreads = np.asarray(np.ptp(np.array(all_parts), axis=0))
+        apart = (PARTS[1][0] - PARTS[0][0]) * n * self.record.interval
+        for i, line in enumerate(lines):
+            if self.record.real and line.frequency == 0:
+                slow = _rate(*(height[i] for height in heights)) / apart
+                spreads[i] = min(slow, self.record.turn)
+        return spreads
+
+    def _errors(self, lines: list[Exponential], spreads: Floats) -> list[float]:
+        """How far each may be off; half a turn where it may be a part of a stronger one."""
+        turn = self.record.turn
+        errors = np.where(spreads > UNCLEAN * turn, OF_UNCLEAN, OF_CLEAN) * spreads
+        for i, line in enumerate(lines):
+            stronger = [x for x in lines if abs(x.coefficient) > abs(line.coefficient)]
+            away = (abs(x.frequency - line.frequency) for x in stronger)
+            nearest = min(away, default=math.inf)
+            if nearest < LINE_WIDTH * turn and spreads[i] > MOVING * nearest:
+                errors[i] = max(errors[i], turn / 2)
+            if line.frequency == 0:  # a faster line is none
+                errors[i] = min(errors[i], turn)
+        return [float(x) for x in errors]
 
     def _seen_from(
         self, part: Record, first: int, lines: list[Exponential]
@@ -322,6 +378,14 @@ class _Band:
                 line = part.climb(part.y, frequency - self.centre)
                 found[i] = self.centre + line.frequency
         return found
+
+
+def _rate(before: float, middle: float, after: float) -> float:
+    """f of A cos(f t + phi) with these values at times -1, 0 and 1, about; f small."""
+    if middle == 0:
+        return math.inf
+    bend = abs(before - 2 * middle + after) / abs(middle)
+    return math.sqrt(bend) + abs(after - before) / abs(2 * middle)
 
 
 def _bands(
@@ -398,10 +462,15 @@ def _hop(samples: Samples) -> int:
 
 
 def _identified(
-    chain: Chain, T: float, rate: float, lines: list[SpectralLine], drifts: Floats
+    chain: Chain, T: float, rate: float, found: list[_Seen], drifts: Floats
 ) -> FrequencyAnalysis:
-    """Names every line by the independent frequencies, the strongest first."""
+    """Names every line by the independent frequencies, the strongest first.
+
+    Sums are told by what windows differ by, not by how far a line may be off.
+    """
     basis = Basis(rate)
+    lines = [seen.line for seen in found]
+    errors: list[float] = []
     seeds: list[int] = []
     strengths: list[float] = []
     names: dict[int, tuple[int, ...]] = {}
@@ -409,12 +478,17 @@ def _identified(
         range(len(lines)), key=lambda i: -lines[i].frequency * lines[i].amplitude
     )
     for i in order:
-        line = lines[i]
-        nu = basis.combination(line.frequency, line.error)
-        free = line.frequency > 0 and len(seeds) < chain.N - 1
-        if nu is None and free and basis.can_tell(line.error):
+        line, spread, _ = found[i]
+        if line.frequency == 0:
+            if spread <= CONSTANT * 2 * math.pi / T:
+                names[i] = ()
+            continue
+        nu = basis.combination(line.frequency, spread)
+        free = len(seeds) < chain.N - 1
+        if nu is None and free and basis.is_independent(line.frequency, spread):
             strengths.append(line.frequency * line.amplitude)
-            basis.add(line.frequency, line.error, strengths[-1] / strengths[0])
+            basis.add(line.frequency, spread, strengths[-1] / strengths[0])
+            errors.append(line.error)
             seeds.append(_name(line.mode, seeds, chain.N))
             nu = (*(0 for _ in seeds[1:]), 1)
         if nu is not None:
@@ -426,12 +500,42 @@ def _identified(
         T,
         tuple(seeds),
         omega,
-        np.array(basis.errors),
+        np.array(errors),
         _actions(named, omega),
         np.array(strengths) / max(strengths, default=1.0),
         tuple(named),
         drifts,
     )
+
+
+def _with_scheme(found: FrequencyAnalysis, samples: Samples) -> FrequencyAnalysis:
+    """With what the scheme adds to the errors.
+
+    Combinations are those of the computed orbit, without it. A combination is off by what its
+    frequencies are.
+    """
+    seen: dict[int, list[Exponential]] = {}
+    for line in found.lines:
+        seen.setdefault(line.mode - 1, []).append(_at_time_zero(line))
+    shifts = {
+        mode: iter(x) for mode, x in scheme_shifts(samples, seen, found.frequencies).items()
+    }
+    own = [float(next(shifts[line.mode - 1])) for line in found.lines]
+    of_omega = np.zeros(len(found.seeds))
+    for line, shift in zip(found.lines, own, strict=True):
+        independent = np.flatnonzero(found.frequencies == line.frequency)
+        of_omega[independent] = shift
+    lines = []
+    for line, shift in zip(found.lines, own, strict=True):
+        nu = line.harmonic
+        more = shift if nu is None else float(np.abs(nu) @ of_omega)
+        lines.append(replace(line, error=line.error + more))
+    return replace(found, lines=tuple(lines), errors=found.errors + of_omega)
+
+
+def _at_time_zero(line: SpectralLine) -> Exponential:
+    value = line.amplitude * np.exp(1j * line.phase)
+    return Exponential(line.frequency, value / 2 if line.frequency else value)
 
 
 def _name(mode: int, taken: list[int], N: int) -> int:
@@ -442,10 +546,10 @@ def _name(mode: int, taken: list[int], N: int) -> int:
 
 def _named(line: SpectralLine, nu: tuple[int, ...] | None, omega: Floats) -> SpectralLine:
     """With its name, and at its own frequency if samples saw it k rates away."""
-    if line.frequency == 0:
-        return replace(line, harmonic=(0,) * len(omega))
     if nu is None:
         return line
+    if line.frequency == 0:
+        return replace(line, harmonic=(0,) * len(omega))
     whole = (*nu, *(0 for _ in range(len(omega) - len(nu))))
     frequency = float(np.dot(whole, omega))
     moved = abs(frequency - line.frequency) > HALF * line.frequency

@@ -15,6 +15,8 @@ MOST_COMBINATIONS = 200_000
 CHANCE = (
     0.01  # expected combinations that meet a frequency by accident, above which none counts
 )
+DOUBTFUL = 0.1  # the same, up to which a light combination leaves a frequency in doubt
+LIGHT = 6.0  # the size of such a combination
 LOWEST_ORDER = 3  # to which sums are tried before a frequency is called independent
 DOUBTS = 4.0  # errors that a combination may be away
 LEAST_ERROR = 1e-14  # of a frequency of order 1: rounding
@@ -117,26 +119,37 @@ class Basis:
 
     def combination(self, frequency: float, error: float) -> tuple[int, ...] | None:
         """The lightest combination that meets a frequency, if that is no accident."""
+        nu, accidents = self._met(frequency, error)
+        return nu if accidents <= CHANCE else None
+
+    def is_independent(self, frequency: float, error: float) -> bool:
+        """Whether no light combination meets a frequency, and one of low order could be told.
+
+        Where an accident is neither likely nor unlikely, as for a weak line of a short orbit, the
+        line may be that combination: it has no name, and adds no frequency.
+        """
         if not self.frequencies:
-            return None
+            return True
+        nu, accidents = self._met(frequency, error)
+        size = math.inf if nu is None else float(np.abs(nu) @ self.weights)
+        doubtful = size <= LIGHT and accidents <= DOUBTFUL
+        return not doubtful and self._accidents(LOWEST_ORDER, error) <= CHANCE
+
+    def _met(self, frequency: float, error: float) -> tuple[tuple[int, ...] | None, float]:
+        """The lightest combination that meets a frequency, and how many would by accident."""
+        if not self.frequencies:
+            return None, math.inf
         known = self.known
         turns = (known.sums - frequency) / self.rate
         away = self.rate * np.abs(turns - np.rint(turns))
         away[0] = math.inf  # the empty sum is no name
         hits = np.flatnonzero(away <= self._tolerances(error))
         if not len(hits):
-            return None
+            return None, math.inf
         lightest = hits[known.sizes[hits] == known.sizes[hits[0]]]
         best = int(lightest[np.argmin(away[lightest])])
-        if self._accidents(float(known.sizes[best]), error) > CHANCE:
-            return None
-        return tuple(self.known.table[best].tolist())
-
-    def can_tell(self, error: float) -> bool:
-        """Whether a frequency of this error would be known for a sum of low order."""
-        if not self.frequencies:
-            return True
-        return self._accidents(LOWEST_ORDER, error) <= CHANCE
+        accidents = self._accidents(float(known.sizes[best]), error)
+        return tuple(self.known.table[best].tolist()), accidents
 
     def _tolerances(self, error: float) -> Floats:
         return np.asarray(DOUBTS * (error + self.known.doubts) + LEAST_ERROR)

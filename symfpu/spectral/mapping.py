@@ -25,7 +25,16 @@ from symfpu.frames.table import joined
 from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
-from symfpu.numbers.typed import Number, decimal, double, exact, integer, part, seed_modes
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import (
+    Number,
+    decimal,
+    double,
+    energy_of,
+    integer,
+    part,
+    seed_modes,
+)
 from symfpu.spectral.one_energy import Row, kept_row, orbit_frequencies, require_analysable
 from symfpu.spectral.samples import require_turns
 from symfpu.sweeps.rows import SweepFailure, SweepRows
@@ -37,6 +46,7 @@ Ints = NDArray[np.int64]
 WORTH_PROCESSES = 2e6  # steps times bonds, of all energies: a second to ten of one core
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class FrequencyMap(Shown, Gridded):
     """Frequencies of orbits of one kind by their energy. Made by `frequency_map`; ours.
@@ -131,6 +141,7 @@ class MapIncomplete(SymfpuError):
         super().__init__(f"{none} ({failure}); {others}: {advice}")
 
 
+@public
 def frequency_map(
     chain: Chain,
     energies: Sequence[Number],
@@ -250,9 +261,9 @@ def _energies(energies: Sequence[Number]) -> dict[str, float]:
     advice = "pass a sequence such as ('0.001', '0.01')"
     if isinstance(energies, (str, bytes)) or not np.iterable(energies):
         raise InputError("energies", energies, "energies H > 0", advice)
-    found = {exact(energy, "energies") for energy in energies}
-    if not found or min(found) <= 0:
-        raise InputError("energies", tuple(energies), "energies H > 0", advice)
+    found = {energy_of(energy, "energies") for energy in energies}
+    if not found:
+        raise InputError("energies", (), "energies H > 0", advice)
     return {decimal(energy): float(energy) for energy in sorted(found)}
 
 

@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.errors import InputError
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import seed_modes
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
 from symfpu.tori.quasiperiodic import FourierTorus
 
 
+@public
 def torus_near(
     analysis: FrequencyAnalysis, seeds: Sequence[int] | None = None
 ) -> FourierTorus:

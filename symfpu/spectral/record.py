@@ -44,6 +44,20 @@ def hann(n: int, power: int = POWER) -> Floats:
     return np.asarray(values / values.sum())
 
 
+def one_constant(lines: list[Exponential]) -> list[Exponential]:
+    """The lines with one constant for all that are: slow ones climb there, each in turn."""
+    constants = [line for line in lines if line.frequency == 0]
+    if len(constants) < 2:
+        return lines
+    whole = Exponential(0.0, sum(line.coefficient for line in constants))
+    first = lines.index(constants[0])
+    return [
+        whole if i == first else line
+        for i, line in enumerate(lines)
+        if line.frequency or i == first
+    ]
+
+
 class Record:
     """A signal y (n,) at times (k - (n-1)/2) interval, with a window."""
 
@@ -157,7 +171,7 @@ class Record:
                 break
             if self._on_top(line, found):
                 break
-            found = self.settle([*found, line], WHILE_SEARCHING)
+            found = one_constant(self.settle([*found, line], WHILE_SEARCHING))
             rest = self.rest(found)
         return sorted(found, key=lambda x: -abs(x.coefficient))
 

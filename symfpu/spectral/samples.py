@@ -74,6 +74,14 @@ class Samples:
         self.count = require_samples(self.T, orbit.step)
         require_turns(orbit.chain, _slowest(orbit), self.T)
 
+    def first(self, count: int, *, parts: int = 1) -> Numbers:
+        """The first so many, (count, N-1), by steps of which so many are one of the orbit."""
+        orbit = self.orbit
+        motion = Motion(orbit.chain, orbit.scheme, orbit.step / parts, NO_BOUNDS)
+        state = motion.coordinates(orbit.Q[:1], orbit.P[:1])
+        _, Q, _ = motion.look(state, count - 1, self.stride * parts, map)
+        return np.concatenate([orbit.Q[:1], Q[0]])
+
     def blocks(self, progress: Progress) -> Iterator[Numbers]:
         """Arrays (n, N-1), one after the other; after the first each begins after the last."""
         motion = Motion(self.orbit.chain, self.orbit.scheme, self.orbit.step, NO_BOUNDS)

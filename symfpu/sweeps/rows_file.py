@@ -17,9 +17,10 @@ from symfpu.files.kept_lines import (
     head_in,
     require_same,
 )
+from symfpu.files.writing import open_to_read
 from symfpu.sweeps.rows import Json, SweepFailure, SweepRow
 
-FORMAT, SCHEMA = "symfpu sweep", 1
+FORMAT, SCHEMA = "symfpu sweep", 2
 RUN = "sweep"
 
 
@@ -75,16 +76,21 @@ class RowsFile(KeptLines):
 def read_rows(path: Path) -> tuple[Json, list[SweepRow]]:
     """The head and the rows of a file of any sweep; InputError for another file."""
     try:
-        content = path.read_bytes()
+        with open_to_read(path) as stream:
+            content = stream.read()
     except OSError as error:
         advice = f"name another ({error.strerror})"
         raise InputError("file", str(path), "a file that can be read", advice) from error
     head = head_in(content)
     if not isinstance(head, dict) or head.get("format") != FORMAT:
         raise InputError("file", str(path), "the file of a sweep", "name another")
-    require_same(path, content, head_of(head["function"], head["fixed"]), RUN)
+    function, fixed = head.get("function"), head.get("fixed")
+    if not (isinstance(function, str) and isinstance(fixed, dict)):
+        raise damaged(path, RUN)
+    require_same(path, content, head_of(function, fixed), RUN)
+    entries = entries_of(path, content, RUN)
     try:
-        return head, list(_rows(entries_of(content)).values())
+        return head, list(_rows(entries).values())
     except (ValueError, KeyError, TypeError) as error:
         raise damaged(path, RUN) from error
 

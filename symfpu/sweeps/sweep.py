@@ -16,6 +16,7 @@ import psutil
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress, unheard
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer
 from symfpu.sweeps.rows import Json, SweepFailure, SweepRow, SweepRows
 from symfpu.sweeps.rows_file import RowsFile, head_of, in_order, key_of, read_rows
@@ -57,6 +58,7 @@ class CaseTooLarge(SymfpuError):
         super().__init__(f"{size}; compute it where there are more, or pass within=")
 
 
+@public
 def sweep(
     function: Callable[..., Any],
     cases: Iterable[Case],
@@ -123,6 +125,7 @@ def sweep(
     return rows
 
 
+@public
 def read_sweep(file: Path | str) -> SweepRows:
     """The rows in the file of a sweep, in the order in which they came.
 

@@ -8,13 +8,12 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from math import lcm
-from typing import Any, Protocol
+from typing import Any
 
 import mpmath
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import (
@@ -30,13 +29,13 @@ from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     GUARD_DIGITS,
-    Arithmetic,
     Numbers,
     mpf,
     with_digits,
 )
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import decimal, exact, integer
-from symfpu.series.series import LindstedtSeries, require_series
+from symfpu.series.series import LindstedtSeries, require_any_series
 from symfpu.tori.root_certificate import certify_root
 from symfpu.tori.torus import QTorus, series_behind
 
@@ -59,26 +58,7 @@ AGREEMENT = (
 )
 
 
-class FrequencySeries(Protocol):
-    """A series of frequencies in the squares of amplitudes, of modes or of travelling waves."""
-
-    @property
-    def chain(self) -> Chain: ...
-    @property
-    def seeds(self) -> tuple[int, ...]: ...
-    @property
-    def frequencies(self) -> tuple[Fraction, ...] | None: ...
-    @property
-    def order(self) -> int: ...
-    @property
-    def digits(self) -> int | None: ...
-    @property
-    def numbers(self) -> Arithmetic: ...
-    def frequency_terms(
-        self, squared_amplitudes: ArrayLike, order: int | None = None
-    ) -> tuple[Numbers, Numbers]: ...
-
-
+@public
 @dataclass(frozen=True)
 class AmplitudeHistory(Shown, Tabled):
     """Amplitudes A(K) by frequency order K, and why orders without a root have none.
@@ -87,11 +67,11 @@ class AmplitudeHistory(Shown, Tabled):
     a torus.
 
     seeds : the modes. orders : all K at which the frequency series gains a term.
-    amplitudes : K -> (A of each seed), shape (s,). failures : K -> the error.
+    amplitudes : K -> (A of each seed), shape (s,). failures : K -> the error. chain : the model.
 
     >>> from symfpu import Chain, amplitude_history, lindstedt
     >>> amplitude_history(lindstedt(Chain(N=8, beta="0.3"), (1,), ("0.3905",), 2))
-    AmplitudeHistory(seeds=(1,), 2 of 2 orders have a root, A(2) = (0.504955824...,))
+    AmplitudeHistory(seeds=(1,), 2 of 2 orders have a root, A(2) = (0.504955824...))
     >>> history = amplitude_history(lindstedt(Chain(N=8, beta="0.3"), (1,), ("0.3905",), 2))
     >>> history.to_frame()[["frequency_order", "seed", "amplitude"]].round(6)
        frequency_order  seed  amplitude
@@ -103,13 +83,15 @@ class AmplitudeHistory(Shown, Tabled):
     orders: tuple[int, ...]
     amplitudes: Mapping[int, tuple[Any, ...]]
     failures: Mapping[int, SymfpuError]
+    chain: Chain | None = None
 
     def __repr__(self) -> str:
         with_root = [K for K in self.orders if K in self.amplitudes]
         last = ""
         if with_root:
             K = with_root[-1]
-            last = f", A({K}) = {self.amplitudes[K]}"
+            sizes = (str(A) for A in self.amplitudes[K])
+            last = f", A({K}) = ({', '.join(sizes)})"
         counted = f"{len(self.amplitudes)} of {len(self.orders)} orders have a root"
         return f"AmplitudeHistory(seeds={self.seeds}, {counted}{last})"
 
@@ -138,17 +120,17 @@ class AmplitudeHistory(Shown, Tabled):
             "difference": [changes.get(K, none)[i] for K, i in rows],
             "failure": [failures.get(K, "") for K, _ in rows],
         }
-        return Table(columns, attributes(self, seeds=self.seeds))
+        return Table(columns, attributes(self, self.chain, seeds=self.seeds))
 
 
-def frequency_orders(series: FrequencySeries) -> tuple[int, ...]:
+def frequency_orders(series: LindstedtSeries) -> tuple[int, ...]:
     """Orders k at which omega^(k) need not vanish: even ones with alpha, all with beta alone."""
     chain = series.chain
     step = chain.degree_step
     return tuple(degree // step for degree in chain.shift_degrees(step * series.order))
 
 
-def steps_of_frequencies(series: FrequencySeries) -> int:
+def steps_of_frequencies(series: LindstedtSeries) -> int:
     """The largest step from one of these orders to the next: 2 with alpha, 1 with beta alone."""
     orders = (0, *frequency_orders(series))
     following = orders[1:] or (first_shifting_order(series.chain),)
@@ -161,6 +143,7 @@ def first_shifting_order(chain: Chain) -> int:
     return chain.shift_degrees(by_the_lowest_force)[0] // chain.degree_step
 
 
+@public
 def amplitude_history(series: LindstedtSeries | QTorus) -> AmplitudeHistory:
     """The amplitudes for every frequency order, each found from the one before.
 
@@ -181,7 +164,7 @@ def amplitude_history(series: LindstedtSeries | QTorus) -> AmplitudeHistory:
     return history_of(series_behind(series))
 
 
-def history_of(series: FrequencySeries) -> AmplitudeHistory:
+def history_of(series: LindstedtSeries) -> AmplitudeHistory:
     """The same of anything that has such a series."""
     orders = frequency_orders(series)
     found: dict[int, tuple[Any, ...]] = {}
@@ -194,9 +177,10 @@ def history_of(series: FrequencySeries) -> AmplitudeHistory:
             squares = root
         except (NoRealAmplitude, DidNotConverge) as failure:
             failures[K] = failure
-    return AmplitudeHistory(series.seeds, orders, found, failures)
+    return AmplitudeHistory(series.seeds, orders, found, failures, series.chain)
 
 
+@public
 def solve_amplitudes(
     series: LindstedtSeries,
     *,
@@ -217,6 +201,8 @@ def solve_amplitudes(
     guess : amplitudes by seed; default none needed: the lowest correction is linear in A^2, and
         each order starts from the root of the one before.
 
+    On a ring the torus is one of travelling waves; seeds q and -q of equal frequencies have equal
+    amplitudes, a standing wave.
     Gauge: A_q multiplies cos(omega_q t + phi_q) in Q_q, and is not Q_q(0). The paper's table and
     captions do not always mean the same truncation; here they are two arguments.
     Raises InputError for arguments out of range and for frequencies that are commensurable within
@@ -233,13 +219,14 @@ def solve_amplitudes(
     >>> {q: round(A, 7) for q, A in torus.amplitudes.items()}
     {1: 0.5843165, 2: 0.4118684}
     """
-    require_series(series)
+    require_any_series(series)
     if series.frequencies is None:
         allowed = "a series with chosen frequencies"
         raise InputError(
             "series", "universal form", allowed, "give frequencies= to lindstedt"
         )
-    _refuse_commensurable(series)
+    if not series.chain.periodic:  # opposite waves of one frequency stand
+        _refuse_commensurable(series)
     K = order_argument("frequency_order", frequency_order, series)
     coordinate_order = order_argument("order", order, series)
     at_rest = dict.fromkeys(series.seeds, 0.0)
@@ -271,7 +258,7 @@ def solve_amplitudes(
     return torus.doubted((*doubts, *residual_doubts(torus)))
 
 
-def square_roots(series: FrequencySeries, squares: Numbers) -> tuple[Any, ...]:
+def square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:
     """Amplitudes by their squares."""
     with series.numbers.context(series.digits):
         roots = tuple(series.numbers.sqrt(squares).tolist())
@@ -304,7 +291,7 @@ def _refuse_commensurable(series: LindstedtSeries) -> None:
                 raise InputError("frequencies", typed, allowed, f"{coincide}: {change}")
 
 
-def order_argument(name: str, value: int | None, series: FrequencySeries) -> int:
+def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
     """An order at which a series is cut, by default its own.
 
     InputError naming the argument if the series ends before.
@@ -318,7 +305,7 @@ def order_argument(name: str, value: int | None, series: FrequencySeries) -> int
 
 
 def by_seed(
-    name: str, values: Mapping[int, Any] | None, series: FrequencySeries
+    name: str, values: Mapping[int, Any] | None, series: LindstedtSeries
 ) -> dict[int, Any]:
     """Numbers by seed in the arithmetic of the series.
 
@@ -336,7 +323,7 @@ def by_seed(
 
 
 def start_of(
-    series: FrequencySeries,
+    series: LindstedtSeries,
     orders: list[int],
     history: AmplitudeHistory,
     guess: Mapping[int, float] | None,
@@ -360,7 +347,7 @@ def start_of(
         return np.array(history.amplitudes[earlier[-1]]) ** 2
 
 
-def shifts(series: FrequencySeries) -> Numbers:
+def shifts(series: LindstedtSeries) -> Numbers:
     """omega_q - Omega_q of the seeds, correctly rounded; shape (s,)."""
     assert series.frequencies is not None
     differences = []
@@ -373,7 +360,7 @@ def shifts(series: FrequencySeries) -> Numbers:
     return np.array(differences, dtype=object)
 
 
-def _lowest_order(series: FrequencySeries) -> Floats:
+def _lowest_order(series: LindstedtSeries) -> Floats:
     """A^2 by the lowest correction, a form of the A^2 of some degree; it may be negative.
 
     Exact where the form is linear. For a degree p above it is a first guess, exact for a sum of
@@ -392,7 +379,7 @@ def _lowest_order(series: FrequencySeries) -> Floats:
     return np.asarray(np.sign(powers) * np.abs(powers) ** (1 / degree))
 
 
-def root_squares(series: FrequencySeries, K: int, start: Numbers) -> tuple[Numbers, float]:
+def root_squares(series: LindstedtSeries, K: int, start: Numbers) -> tuple[Numbers, float]:
     """A^2 that solves the equations truncated at order K, and the residual it leaves."""
     from scipy.optimize import root
 

@@ -12,6 +12,7 @@ import numpy as np
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, exact, seed_modes
 from symfpu.tori.broyden import Found, NotFound, solve, walk
 from symfpu.tori.frequencies import (
@@ -217,6 +218,7 @@ def _refuse_strange(found: Found[tuple[Point, QTorus]], member: _Member) -> None
         raise NotFound(found.x, left, f"the equations of motion are met only to {share}")
 
 
+@public
 def torus_at_energy(
     chain: Chain,
     seeds: Sequence[int],

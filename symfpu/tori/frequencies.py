@@ -27,7 +27,9 @@ from symfpu.numbers.arithmetic import (
     Arithmetic,
     Numbers,
 )
-from symfpu.numbers.typed import Number, exact, integer, seed_modes
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import Number, exact, integer, order_of, seed_modes
+from symfpu.series.arguments import digits_of
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
 from symfpu.series.series import LindstedtSeries
@@ -320,8 +322,10 @@ def checked_plan(
 ) -> Plan:
     """The arguments checked."""
     require_chain(chain)
-    order = integer(order, "order", 0)
-    K = integer(order if frequency_order is None else frequency_order, "frequency_order", 0)
+    order = order_of(order)
+    K = order_of(
+        order if frequency_order is None else frequency_order, argument="frequency_order"
+    )
     coordinates = order if coordinate_order is None else coordinate_order
     coordinates = integer(coordinates, "coordinate_order", 0)
     first = 2 // chain.degree_step
@@ -334,10 +338,11 @@ def checked_plan(
             allowed = f"0..{order}, the order of the series"
             raise InputError(name, k, allowed, "compute a longer series or lower it")
     if digits is not None:
-        integer(digits, "digits", 1)
+        digits_of(digits)
     return Plan(order, K, coordinates, phases, digits)
 
 
+@public
 def torus_at_amplitudes(
     chain: Chain,
     amplitudes: Mapping[int, Number],

@@ -6,7 +6,7 @@ They give the orbit, its energies, their averages, and residuals.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.algebra.grading import Ints
-from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.frames.attributes import RADIANS, attributes
 from symfpu.frames.grid import Grid, Variable
@@ -29,16 +29,19 @@ from symfpu.numbers.arithmetic import (
     MULTIPRECISION,
     Arithmetic,
     Numbers,
+    text,
     with_digits,
 )
+from symfpu.numbers.counted import counted
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer
-from symfpu.tori.grid_sums import grid_sums
+from symfpu.tori.columns import CHUNK, Columns, ModeColumns, columns_of, require_columns
 
 Floats = NDArray[np.float64]
 Value = TypeVar("Value")
 
-CHUNK = 4_000_000  # entries of a table of cosines held at once
 GRID_POINTS = 4096  # angles at which a residual is taken, about
+MOST_ANGLES = 10**8  # angles of a grid that is asked for; minutes
 TRANSFORMED = 4 * GRID_POINTS  # angles whose sums are held at once, at most
 DOUBLES_RESIDUAL = 1e-10  # relative residuals above it need no more digits
 GRID_POINTS_DIGITS = 16  # the same for numbers of many digits
@@ -72,21 +75,33 @@ else:
     Parts = object
 
 
+@public
 class QuasiPeriodic(Shown, Gridded, Parts):
     """Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
 
-    This is what every torus and breather can do.
+    This is what every torus and breather can do, with fixed ends and on a ring.
 
     chain : the model. seeds, frequencies, phases : the s angles.
-    harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : c_q[nu]; shape (H, N-1).
-    amplitudes : A_q by seed, the coefficient of cos(theta_q) in Q_q.
+    harmonics : the nu, one of each pair +-nu; shape (H, s). cosines : their coefficients, shape
+        (H, C): c_q[nu] of the modes with fixed ends. On a ring those of travelling waves, C = 1,
+        or of standing waves, whose columns are the modes of half of it (`symfpu.tori.columns`).
+    travels : True for travelling waves of a ring.
+    amplitudes : A_q by seed, the coefficient of cos(theta_q) in Q_q, or of the wave of the seed.
     warnings : reasons to doubt that this is a torus.
+
+    On a ring mode coordinates are complex, Q_(-q) = conj Q_q.
 
     With digits, results are mpf or arrays of them, evaluated with that many digits and more, which
     print that many; else doubles.
     """
 
     warnings: tuple[str, ...] = ()
+    travels: bool = False
+
+    @property
+    def stands(self) -> bool:
+        """Whether it is one of standing waves on a ring, as `unfold` makes them."""
+        return self.chain.periodic and not self.travels
 
     @property
     def numbers(self) -> Arithmetic:
@@ -99,6 +114,11 @@ class QuasiPeriodic(Shown, Gridded, Parts):
     @cached_property
     def _omega(self) -> Numbers:
         return np.array([self.numbers.number(w) for w in self.frequencies])
+
+    @cached_property
+    def _columns(self) -> Columns:
+        """What its coefficients stand for."""
+        return columns_of(self.chain, self.seeds, self.harmonics, travels=self.travels)
 
     @cached_property
     def _rates(self) -> Numbers:
@@ -133,14 +153,18 @@ class QuasiPeriodic(Shown, Gridded, Parts):
     def by_harmonic(self) -> Numbers:
         """Coefficients of a solution of one angle by the number n of the harmonic, 0 .. H.
 
-        Row n belongs to cos(n (omega t + phi)); shape (H+1, N-1). Raises InputError for more
+        Row n belongs to cos(n (omega t + phi)); shape (H+1, C). Raises InputError for more
         angles.
         """
         self._only("harmonics", self.seeds)
         n = np.abs(self.harmonics[:, 0])
-        table = self.numbers.zeros((max(int(n.max()), 1) + 1, self.chain.N - 1))
+        table = self.numbers.zeros((max(int(n.max()), 1) + 1, self.cosines.shape[1]))
         table[n] = self.cosines
         return table
+
+    def column(self, q: int) -> int:
+        """Which of the columns of coefficients belongs to the mode q at its own harmonic."""
+        return self._columns.column(q)
 
     def _only(self, name: str, values: tuple[Value, ...]) -> Value:
         if len(self.seeds) == 1:
@@ -157,7 +181,14 @@ class QuasiPeriodic(Shown, Gridded, Parts):
         phases = {q: float(phi) for q, phi in self.phases.items()}
         cosines = self.cosines.astype(float)
         return FourierTorus(
-            self.chain, self.seeds, self.frequencies, self.harmonics, cosines, phases
+            self.chain,
+            self.seeds,
+            self.frequencies,
+            self.harmonics,
+            cosines,
+            phases,
+            travels=self.travels,
+            warnings=self.warnings,
         )
 
     def state(self, t: float = 0.0) -> tuple[Floats, Floats]:
@@ -175,45 +206,36 @@ class QuasiPeriodic(Shown, Gridded, Parts):
                 "t",
                 t,
                 "one finite number",
-                "take positions(t) and momenta(t) for many times",
+                "take Q(t) and P(t) for many times",
             )
-        Q, P = self.positions(t), self.momenta(t)
-        return Q.astype(float), P.astype(float)
+        kind = self.chain.kind_of_ends.mode_type
+        return self.Q(t).astype(kind), self.P(t).astype(kind)
 
-    def positions(self, t: ArrayLike) -> Numbers:
+    def Q(self, t: ArrayLike) -> Numbers:
         """Mode coordinates Q_q(t); t a number or an array (T,), result (N-1,) or (T, N-1)."""
-        return with_digits(self._positions(t), self.digits)
+        return with_digits(self._Q(t), self.digits)
 
-    def _positions(self, t: ArrayLike) -> Numbers:
-        return self._along(t, self._cosine_sums(self.cosines))
+    def _Q(self, t: ArrayLike) -> Numbers:
+        return self._along(t, self.cosines)
 
-    def momenta(self, t: ArrayLike) -> Numbers:
+    def P(self, t: ArrayLike) -> Numbers:
         """Mode momenta P_q(t) = dQ_q/dt.
 
         t : a number or an array (T,), result (N-1,) or (T, N-1).
         """
-        return with_digits(self._momenta(t), self.digits)
+        return with_digits(self._P(t), self.digits)
 
-    def _momenta(self, t: ArrayLike) -> Numbers:
-        def derivative(angles: Numbers) -> Numbers:
+    def _P(self, t: ArrayLike) -> Numbers:
+        with self._context():
             velocities = -self._rates[:, None] * self.cosines
-            return self.numbers.dot(self.numbers.sin(angles), velocities)
+            return self._along(t, velocities, sine=True)
 
-        return self._along(t, derivative)
-
-    def _cosine_sums(self, coefficients: Numbers) -> Callable[[Numbers], Numbers]:
-        """Sums of cosines of the angles of all harmonics, (P, H); shape (P, N-1)."""
-
-        def sums(angles: Numbers) -> Numbers:
-            return self.numbers.dot(self.numbers.cos(angles), coefficients)
-
-        return sums
-
-    def _along(self, t: ArrayLike, evaluate: Callable[[Numbers], Numbers]) -> Numbers:
+    def _along(self, t: ArrayLike, coefficients: Numbers, *, sine: bool = False) -> Numbers:
+        """Modes of coefficients of cos(nu.theta), or of sin(nu.theta), at times."""
         with self._context():
             times = self._times(t)
             theta = times.reshape(-1, 1) * self._omega + self._offsets()
-            values = self._at_angles(theta, evaluate)
+            [values] = self._at_angles(theta, [coefficients], sine=sine)
             return values[0] if times.ndim == 0 else values
 
     def _times(self, t: ArrayLike) -> Numbers:
@@ -231,11 +253,32 @@ class QuasiPeriodic(Shown, Gridded, Parts):
     def _offsets(self) -> Numbers:
         return self.numbers.array([self.phases[q] for q in self.seeds])
 
-    def _at_angles(self, theta: Numbers, evaluate: Callable[[Numbers], Numbers]) -> Numbers:
+    def _at_angles(
+        self, theta: Numbers, tables: Sequence[Numbers], *, sine: bool = False
+    ) -> list[Numbers]:
+        """Modes (P, N-1) of tables of coefficients at angles (P, s)."""
         step = max(1, CHUNK // len(self.harmonics))
-        starts = range(0, len(theta), step)
-        parts = [evaluate(theta[i : i + step] @ self.harmonics.T) for i in starts]
-        return np.concatenate(parts) if parts else np.zeros((0, self.chain.N - 1))
+        parts = []
+        for i in range(0, len(theta), step):
+            angles = theta[i : i + step] @ self.harmonics.T
+            parts.append(self._columns.modes(angles, tables, self.numbers, sine=sine))
+        if not parts:
+            kind = self.chain.kind_of_ends.mode_type
+            return [np.zeros((0, self.chain.N - 1), dtype=kind) for _ in tables]
+        return [np.concatenate(found) for found in zip(*parts, strict=True)]
+
+    def x(self, t: ArrayLike) -> Numbers:
+        """Displacements x_1 .. x_(N-1); t a number or (T,), result (N-1,) or (T, N-1).
+
+        On a ring x_0 .. x_(N-1).
+        """
+        with self._context():
+            return with_digits(self.chain.positions(self._Q(t)), self.digits)
+
+    def p(self, t: ArrayLike) -> Numbers:
+        """Momenta of the particles; t a number or (T,), result (N-1,) or (T, N-1)."""
+        with self._context():
+            return with_digits(self.chain.positions(self._P(t)), self.digits)
 
     # energies
 
@@ -245,13 +288,13 @@ class QuasiPeriodic(Shown, Gridded, Parts):
         Constant in time for an exact torus.
         """
         with self._context():
-            energy = self.chain.energy(self._positions(t), self._momenta(t))
+            energy = self.chain.energy(self._Q(t), self._P(t))
             return with_digits(energy[()], self.digits)
 
     def harmonic_energies(self, t: ArrayLike = 0.0) -> Numbers:
         """Harmonic energies E_q(t) (Eq. harmonicene); shape of t with an axis N-1 at the end."""
         with self._context():
-            energies = self.chain.harmonic_energies(self._positions(t), self._momenta(t))
+            energies = self.chain.harmonic_energies(self._Q(t), self._P(t))
             return with_digits(energies, self.digits)
 
     def energy_error(self, t: ArrayLike, *, harmonic: bool = False) -> Numbers:
@@ -272,37 +315,26 @@ class QuasiPeriodic(Shown, Gridded, Parts):
 
         T : averaging time from t = 0, computed in doubles; None for the infinite-time average,
         (1/4) sum c^2 ((nu.omega)^2 + Omega^2) over nu != 0 plus the constant term. With the factor
-        1/2 of E_q that the paper's section 3.2 leaves out.
+        1/2 of E_q that the paper's section 3.2 leaves out. On a ring a wave has half of its energy
+        in q and half in -q, and waves of one mode with equal rates interfere.
         """
         if T is not None:
-            return self._finite_average(T)
+            return self._average_until(T)
         with self._context():
-            linear = self.chain.frequencies(self.numbers)
-            weights = np.where((self.harmonics != 0).any(axis=1), 0.5, 1.0)
-            squares = self.cosines**2
-            kinetic = (weights * self._rates**2) @ squares
-            average = 0.5 * (kinetic + linear**2 * (weights @ squares))
+            offsets = self.harmonics @ self._offsets()
+            average = self._columns.average_spectrum(
+                self.cosines, self.frequencies, offsets, self.numbers
+            )
             return with_digits(np.asarray(average), self.digits)
 
-    def _finite_average(self, T: float) -> Floats:
+    def _average_until(self, T: float) -> Floats:
         if not isinstance(T, Real) or not np.isfinite(float(T)) or T <= 0:
             raise InputError(
                 "T", T, "a positive finite time, or None for infinite", "pass T > 0"
             )
-        linear = self.chain.frequencies()
-        rates, cosines = self._rates.astype(float), self.cosines.astype(float)
-        psi = self.harmonics @ np.array([float(self.phases[q]) for q in self.seeds])
-        velocity = rates[:, None] * cosines
-        total = np.zeros(self.chain.N - 1)
-        step = max(1, CHUNK // len(self.harmonics))
-        for i in range(0, len(self.harmonics), step):
-            rows = slice(i, i + step)
-            difference = mean_cosine(rates[rows, None] - rates, psi[rows, None] - psi, T)
-            total_ = mean_cosine(rates[rows, None] + rates, psi[rows, None] + psi, T)
-            total += np.einsum("hq,hq->q", velocity[rows], (difference - total_) @ velocity)
-            squares = np.einsum("hq,hq->q", cosines[rows], (difference + total_) @ cosines)
-            total += linear**2 * squares
-        return total / 4
+        offsets = self.harmonics @ np.array([float(self.phases[q]) for q in self.seeds])
+        cosines = self.cosines.astype(float)
+        return self._columns.average_until(float(T), cosines, self.frequencies, offsets)
 
     # the equations of motion
 
@@ -357,34 +389,55 @@ class QuasiPeriodic(Shown, Gridded, Parts):
         worst = np.zeros(self.chain.N - 1)
         largest: Any = 0.0
         squares = self.chain.frequencies(self.numbers) ** 2
-        linear = (squares - self._rates[:, None] ** 2) * self.cosines
-        for sums in self._on_grid(np.hstack([self.cosines, linear]), number):
-            Q, off = np.hsplit(sums, 2)
+        own = self._columns.linear(self.numbers) ** 2
+        linear = (own - self._rates[:, None] ** 2) * self.cosines
+        for Q, off in self._on_grid([self.cosines, linear], number):
             anharmonic = self.chain.anharmonic_accelerations(Q)
             worst = np.maximum(worst, np.abs(off - anharmonic).max(axis=0))
             largest = max(largest, np.abs(anharmonic - squares * Q).max())
         return worst, largest
 
-    def _on_grid(self, coefficients: Numbers, number: int) -> Iterator[Numbers]:
-        """Sums of cosines at the angles of the grid, in its portions, or all of them at once."""
-        if self.digits is None and number ** len(self.seeds) <= TRANSFORMED:
-            yield grid_sums(self.harmonics, coefficients, number)
+    def _on_grid(self, tables: Sequence[Numbers], number: int) -> Iterator[list[Numbers]]:
+        """Modes of tables of coefficients at the angles of the grid, in its portions, or all."""
+        columns, small = self._columns, number ** len(self.seeds) <= TRANSFORMED
+        if self.digits is None and small and isinstance(columns, ModeColumns):
+            yield columns.modes_on_grid(tables, number)
             return
-        sums = self._cosine_sums(coefficients)
         for theta in self.angle_grid(number):
-            yield self._at_angles(theta, sums)
+            yield self._at_angles(theta, tables)
+
+    def energy_range(self) -> float:
+        """The range of H over a grid of angles, over its mean: zero for an exact torus."""
+        with self._context():
+            velocities = -self._rates[:, None] * self.cosines
+            energies = []
+            for theta in self.angle_grid(self._grid_points()):
+                [Q] = self._at_angles(theta, [self.cosines])
+                [P] = self._at_angles(theta, [velocities], sine=True)
+                energies.append(self.chain.energy(Q, P))
+            H = np.concatenate(energies)
+            return float((H.max() - H.min()) / abs(H.mean()))
 
     def angle_grid(self, number: int) -> Iterator[Numbers]:
         """The tensor grid of angles, radians, in portions (P, s); a shift keeps it off 0 and pi.
 
-        number : of points for each of the s angles.
+        number : of points for each of the s angles; at most MOST_ANGLES points in all.
         """
         s = len(self.seeds)
-        shape = (number,) * s
-        for start in range(0, number**s, GRID_POINTS):
-            index = np.arange(start, min(start + GRID_POINTS, number**s))
+        each = integer(number, "number", 1)
+        if each**s > MOST_ANGLES:
+            allowed = f"at most {MOST_ANGLES:,} points on the grid of {s} angles"
+            raise InputError("number", each, allowed, "take fewer points for each angle")
+        return self._angles((each,) * s)
+
+    def _angles(self, shape: tuple[int, ...]) -> Iterator[Numbers]:
+        """The points of a grid of this shape, in portions."""
+        points = math.prod(shape)
+        portion = angles_at_once(self.chain)
+        for start in range(0, points, portion):
+            index = np.arange(start, min(start + portion, points))
             digits = np.stack(np.unravel_index(index, shape), axis=-1)
-            yield 2 * self.numbers.pi * (3 * digits + 1) / (3 * number)
+            yield 2 * self.numbers.pi * (3 * digits + 1) / (3 * shape[0])
 
     # as a table
 
@@ -393,20 +446,21 @@ class QuasiPeriodic(Shown, Gridded, Parts):
         phases = [self.phases[q] for q in self.seeds]
         amplitudes = [self.amplitudes[q] for q in self.seeds]
         nu = "factor of the angle of a seed in a harmonic"
-        cosine = "coefficient of cos(nu.(omega t + phi)) in Q_q"
         average = "infinite-time average of the harmonic energy E_q"
         with self._context():
             rates = with_digits(self._omega, self.digits)
             linear = with_digits(self.chain.frequencies(self.numbers), self.digits)
+        columns = self._columns.columns
         return Grid(
             axes={
                 "harmonic": list(map(joined, self.harmonics.tolist())),
                 "mode": self.chain.mode_numbers,
                 "seed": self.seeds,
+                **columns,
             },
             variables={
                 "nu": Variable(("harmonic", "seed"), self.harmonics, nu),
-                "cosine": Variable(("harmonic", "mode"), self.cosines, cosine),
+                **self._columns.variables(self.cosines),
                 "frequency": Variable(seeds, rates, "frequency omega_q of a seed"),
                 "amplitude": Variable(
                     seeds, amplitudes, "coefficient of cos(theta_q) in Q_q"
@@ -426,9 +480,14 @@ class QuasiPeriodic(Shown, Gridded, Parts):
                 digits=self.digits,
                 warnings=self.warnings,
             ),
-            rows=("harmonic", "mode"),
+            rows=("harmonic", *columns),
             across="seed",
         )
+
+
+def angles_at_once(chain: Chain) -> int:
+    """How many angles of a grid are in one portion."""
+    return max(1, min(GRID_POINTS, CHUNK // chain.N))
 
 
 def points_of_each_angle(wanted: int, s: int) -> int:
@@ -437,17 +496,29 @@ def points_of_each_angle(wanted: int, s: int) -> int:
     return max(2, min(64, number))
 
 
-def require_solution(solution: object, argument: str) -> None:
-    """InputError for what is no solution."""
+def require_solution(solution: object, argument: str) -> QuasiPeriodic:
+    """A torus or a breather; InputError for what is none."""
     if not isinstance(solution, QuasiPeriodic):
         advice = "pass what solve_amplitudes, refine or periodic_orbit gave"
         raise InputError(
             argument, type(solution).__name__, "a solution: a torus or a breather", advice
         )
+    return solution
 
 
-def amplitudes_of(solution: Solution) -> dict[int, Any]:
-    """A_q by seed, the coefficient of cos(theta_q) in Q_q, zero where there is none."""
+def require_fixed_solution(
+    solution: object, argument: str, advice: str = "what takes a ring is in docs/chains.md"
+) -> QuasiPeriodic:
+    """The same of a chain with fixed ends; InputError also for one of a ring, with advice."""
+    found = require_solution(solution, argument)
+    if found.chain.periodic:
+        allowed = "a solution of a chain with fixed ends: this is not known on a ring"
+        raise InputError(argument, f"of {found.chain!r}", allowed, advice)
+    return found
+
+
+def amplitudes_of(solution: QuasiPeriodic) -> dict[int, Any]:
+    """A_q by seed, the coefficient of its own harmonic, zero where there is none."""
     rows = {
         tuple(nu): row
         for nu, row in zip(solution.harmonics.tolist(), solution.cosines, strict=True)
@@ -458,7 +529,7 @@ def amplitudes_of(solution: Solution) -> dict[int, Any]:
         unit = tuple(int(i == j) for j in range(len(solution.seeds)))
         opposite = tuple(-n for n in unit)
         row = rows.get(unit, rows.get(opposite, nothing))
-        value = row[q - 1]
+        value = row[solution.column(q)]
         amplitudes[q] = float(value) if solution.digits is None else value
     return amplitudes
 
@@ -473,20 +544,21 @@ class FourierTorus(QuasiPeriodic):
         that name the angles.
     frequencies : omega of every seed, exact, shape (s,). harmonics : the nu, integers, one of
         each pair +-nu, shape (H, s).
-    cosines : c_q[nu], shape (H, N-1). phases : phi by seed, 0 where left out.
-    digits : of cosines in mpf; None for doubles.
+    cosines : c_q[nu], shape (H, N-1); (H, 1) of travelling waves, (H, N/2 - 1) of standing waves
+        of a ring. phases : phi by seed, 0 where left out.
+    digits : of cosines in mpf; None for doubles. travels : True for travelling waves of a ring.
+    warnings : reasons to doubt that this is a torus.
 
-    Eqs. qser and serabs1 with the amplitudes put in. Nothing is checked: whether it solves the
-    equations of motion is what `residual` measures.
+    Eqs. qser and serabs1 with the amplitudes put in. Whether it solves the equations of motion is
+    what `residual` measures. Raises InputError for coefficients of another shape.
 
     >>> from symfpu import Chain
     >>> half = (Fraction(1, 2),)
     >>> harmonics, cosines = np.array([[1]]), np.array([[1.0, 0, 0]])
     >>> mode = FourierTorus(Chain(4, alpha=1), (1,), half, harmonics, cosines, {1: 0.0})
     >>> mode
-    FourierTorus(chain=Chain(N=4, alpha=1), seeds=(1,), frequencies=(Fraction(1, 2),),
-    phases={1: 0.0}, ...)
-    >>> mode.positions(0.0)
+    FourierTorus(N=4, alpha=1, omega_1=0.5, A_1=1, 1 harmonic)
+    >>> mode.Q(0.0)
     array([1., 0., 0.])
     >>> mode.to_frame()
       harmonic  mode  nu_1  cosine  average_energy  linear_frequency
@@ -502,12 +574,27 @@ class FourierTorus(QuasiPeriodic):
     cosines: Numbers = field(repr=False)
     phases: Mapping[int, Any] = field(default_factory=dict)
     digits: int | None = None
+    travels: bool = False
+    warnings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        require_fixed_ends(self.chain)
+        require_columns(
+            self.chain, self.seeds, self.harmonics, self.cosines, travels=self.travels
+        )
         phases = {q: self.phases.get(q, 0.0) for q in self.seeds}
         object.__setattr__(self, "phases", phases)
         show(self, "cosines", "phases")
+
+    def __repr__(self) -> str:
+        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        by_seed = zip(self.seeds, self.frequencies, strict=True)
+        rates = ", ".join(f"omega_{q}={float(w):.13g}" for q, w in by_seed)
+        places = self.digits or 13
+        amplitudes = ", ".join(
+            f"A_{q}={text(A, places)}" for q, A in self.amplitudes.items()
+        )
+        harmonics = counted(len(self.harmonics), "harmonic")
+        return f"{type(self).__name__}({chain}, {rates}, {amplitudes}, {harmonics})"
 
     @property
     def amplitudes(self) -> Mapping[int, Any]:
@@ -515,15 +602,9 @@ class FourierTorus(QuasiPeriodic):
         return amplitudes_of(self)
 
 
-def show(result: QuasiPeriodic, *names: str) -> None:
+def show(result: Any, *names: str) -> None:
     """Lets numbers in these fields of a frozen result print its digits; for `__post_init__`."""
     if result.digits is not None:
         for name in names:
             shown = with_digits(getattr(result, name), result.digits)
             object.__setattr__(result, name, shown)
-
-
-def mean_cosine(rate: Floats, phase: Floats, T: float) -> Floats:
-    """(1/T) times the integral of cos(rate t + phase) over 0 .. T, stable for every rate."""
-    half = rate * (T / 2)
-    return np.asarray(np.sinc(half / np.pi) * np.cos(half + phase))

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar
+from typing import Any
 
 import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.chain.frequency_shift import LARGEST_AMPLITUDE
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
 from symfpu.frames.attributes import attributes
 from symfpu.frames.grid import Grid, Variable
@@ -28,20 +29,20 @@ from symfpu.numbers.arithmetic import (
     mpfr_as_mpf,
     with_digits,
 )
+from symfpu.numbers.counted import counted
 from symfpu.numbers.mpfr import MPFR, at_the_face, in_mpf, inside
-from symfpu.numbers.typed import integer
-from symfpu.series.series import LindstedtSeries, require_series
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import integer, order_of
+from symfpu.series.series import LindstedtSeries, require_any_series
 from symfpu.tori.amplitudes import (
-    FrequencySeries,
     first_shifting_order,
     frequency_orders,
     shifts,
 )
-from symfpu.tori.quasiperiodic import FourierTorus
+from symfpu.tori.quasiperiodic import FourierTorus, require_fixed_solution
 from symfpu.tori.torus import QTorus, require_series_torus
 
 Floats = NDArray[np.float64]
-Series = TypeVar("Series", bound=FrequencySeries)
 
 # distance of a zero, relative to its pole, below which both are noise of doubles
 FROISSART = 1e-4
@@ -64,7 +65,7 @@ class PadeSum(Tabled):
     Wynn's epsilon algorithm (M. Wynn, MTAC 10 (1956) 91); the paper sums no series this way.
 
     >>> PadeSum(np.array([0.5]), np.array([0.25]))
-    PadeSum(values=array([0.5]), disagreement=array([0.25]))
+    PadeSum(1 sum, largest disagreement 0.25)
     >>> PadeSum(np.array([0.5]), np.array([0.25])).to_frame()
        index_0  value  disagreement
     0        0    0.5          0.25
@@ -72,6 +73,11 @@ class PadeSum(Tabled):
 
     values: Numbers
     disagreement: Floats
+
+    def __repr__(self) -> str:
+        sums = counted(self.values.size, "sum")
+        largest = self.disagreement.max(initial=0.0)
+        return f"PadeSum({sums}, largest disagreement {largest:.2g})"
 
     def _table(self) -> Table:
         """One row for each sum, with its place in the array."""
@@ -145,6 +151,7 @@ def _epsilon(terms: Numbers) -> tuple[Numbers, Floats]:
     return best, distance.astype(float)
 
 
+@public
 def pade_frequencies(
     series: LindstedtSeries,
     amplitudes: Mapping[int, Any],
@@ -164,16 +171,17 @@ def pade_frequencies(
     >>> pade_frequencies(series, {1: 0.5}).values.round(6)
     array([0.39068])
     """
-    require_series(series)
-    _, orders = _checked(series, frequency_order)
+    require_any_series(series)
+    orders = _checked(series, frequency_order)
     with series.numbers.context(series.digits):
         given = _by_seed(series, "amplitudes", amplitudes)
-        squares = series.numbers.array([given[q] for q in series.seeds]) ** 2
+        squares = _squares(series, "amplitudes", given)
         terms, _ = series.frequency_terms(squares, orders[-1])
         resummed = pade_sum(terms[[0, *orders]])
     return replace(resummed, values=with_digits(resummed.values, series.digits))
 
 
+@public
 def pade_amplitudes(
     series: LindstedtSeries, guess: Mapping[int, Any], frequency_order: int | None = None
 ) -> dict[int, Any]:
@@ -192,13 +200,13 @@ def pade_amplitudes(
     >>> round(pade_amplitudes(series, solve_amplitudes(series).amplitudes)[1], 6)
     0.405162
     """
-    require_series(series)
+    require_any_series(series)
     guess = _by_seed(series, "guess", guess)
-    _, orders = _checked(series, frequency_order)
+    orders = _checked(series, frequency_order)
     K = orders[-1]
     target = shifts(series)
     with series.numbers.context(series.digits):
-        scale = series.numbers.array([guess[q] for q in series.seeds]) ** 2
+        scale = _squares(series, "guess", guess)
 
         def equations(*point: Any) -> list[Any]:
             squares = np.array(point) * scale
@@ -223,7 +231,7 @@ def pade_amplitudes(
     return with_digits(amplitudes, series.digits)
 
 
-def _checked(series: Series, frequency_order: int | None) -> tuple[Series, list[int]]:
+def _checked(series: LindstedtSeries, frequency_order: int | None) -> list[int]:
     """The orders of the frequency series up to one.
 
     InputError if there is none, or none chosen frequency.
@@ -243,16 +251,25 @@ def _checked(series: Series, frequency_order: int | None) -> tuple[Series, list[
         raise InputError(
             "frequency_order", top, allowed, "take another or compute a longer series"
         )
-    return series, orders
+    return orders
 
 
 def _by_seed(
-    series: FrequencySeries, argument: str, values: Mapping[int, Any]
+    series: LindstedtSeries, argument: str, values: Mapping[int, Any]
 ) -> Mapping[int, Any]:
     if any(q not in values for q in series.seeds):
         allowed = f"a mapping with an amplitude for each of the seeds {series.seeds}"
         raise InputError(argument, values, allowed, "complete it")
     return values
+
+
+def _squares(series: LindstedtSeries, argument: str, values: Mapping[int, Any]) -> Numbers:
+    """A^2 in the order of the seeds; InputError beyond what series can be summed at."""
+    amplitudes = series.numbers.array([values[q] for q in series.seeds])
+    if not (abs(amplitudes) <= LARGEST_AMPLITUDE).all():
+        allowed = f"amplitudes up to {LARGEST_AMPLITUDE:g}"
+        raise InputError(argument, values, allowed, "rescale the amplitudes")
+    return np.asarray(amplitudes**2)
 
 
 def _solved(equations: Callable[..., list[Any]], count: int, digits: int | None) -> Numbers:
@@ -275,11 +292,12 @@ def _solved(equations: Callable[..., list[Any]], count: int, digits: int | None)
     return np.array(list(found), dtype=object)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ResummedTorus(FourierTorus):
     """A torus whose coefficients are Pade sums. Made by `resum`; dimensionless, phases in radians.
 
-    chain, seeds, frequencies, phases, digits : those of the torus. harmonics : (H, s).
+    chain, seeds, frequencies, phases, digits, travels, warnings : those of the torus. harmonics :
+        (H, s).
         cosines : resummed, (H, N-1).
     disagreement : of neighbouring approximants, doubles, (H, N-1); trust, no bound. Wynn, MTAC 10
         (1956) 91.
@@ -287,7 +305,7 @@ class ResummedTorus(FourierTorus):
     >>> from symfpu import Chain, lindstedt, resum, solve_amplitudes
     >>> torus = resum(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 4)))
     >>> torus
-    ResummedTorus(chain=Chain(N=8, alpha=0.3), seeds=(1,), frequencies=(Fraction(781, 2000),), ...)
+    ResummedTorus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4056676815382, 6 harmonics)
     >>> torus.disagreement.shape == torus.cosines.shape
     True
     >>> "disagreement" in torus.to_xarray()
@@ -303,6 +321,7 @@ class ResummedTorus(FourierTorus):
         return replace(grid, variables={**grid.variables, "disagreement": trust})
 
 
+@public
 def resum(torus: QTorus) -> ResummedTorus:
     """The same torus with every coefficient c_q[nu] resummed, up to the torus' own order.
 
@@ -318,7 +337,8 @@ def resum(torus: QTorus) -> ResummedTorus:
     >>> bool(resum(torus).residual() < torus.residual())
     True
     """
-    return next(resum_by_order(require_series_torus(torus), [torus.order]))
+    require_fixed_solution(require_series_torus(torus), "torus")
+    return next(resum_by_order(torus, [torus.order]))
 
 
 def resum_by_order(torus: QTorus, orders: Iterable[int]) -> Iterator[ResummedTorus]:
@@ -326,7 +346,7 @@ def resum_by_order(torus: QTorus, orders: Iterable[int]) -> Iterator[ResummedTor
 
     InputError for one above its own.
     """
-    orders = [integer(order, "order", 0) for order in orders]
+    orders = [order_of(order) for order in orders]
     highest = max(orders, default=0)
     if highest > torus.order:
         allowed = f"0..{torus.order}, the order of the torus"
@@ -381,8 +401,9 @@ def _resummed(table: Numbers, torus: QTorus) -> tuple[Numbers, Floats]:
     return at_the_face(cosines), disagreement
 
 
+@public
 def pade_poles(
-    series: FrequencySeries, q: int, amplitudes: Mapping[int, Any]
+    series: LindstedtSeries, q: int, amplitudes: Mapping[int, Any]
 ) -> NDArray[np.complex128]:
     """Poles of the approximant of omega_q, in units of the actual mu, nearest first.
 
@@ -403,9 +424,10 @@ def pade_poles(
     array([13.5+0.j, 28.5+0.j])
     """
     if not hasattr(series, "frequency_terms"):
-        advice = "pass what lindstedt or travelling_waves gave"
-        raise InputError("series", type(series).__name__, "a series", advice)
-    _, orders = _checked(series, None)
+        raise InputError(
+            "series", type(series).__name__, "a series", "pass what lindstedt gave"
+        )
+    orders = _checked(series, None)
     if q not in series.seeds:
         allowed = f"a seed, one of {series.seeds}"
         raise InputError("q", q, allowed, "only seeds have frequency corrections")

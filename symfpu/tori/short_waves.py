@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from symfpu.chain.chain import Chain
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import exact
-from symfpu.series.travelling import travelling_waves
-from symfpu.tori.ring_torus import RingTorus, cut_waves
+from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.quasiperiodic import FourierTorus
+from symfpu.tori.torus import QTorus
 
 DIGITS = 25  # of the frequencies
 # relative shift of the frequencies of the series whose first corrections are read
@@ -30,26 +31,22 @@ def shifts_by_squares(chain: Chain, seeds: Sequence[int]) -> NDArray[np.float64]
     """
     linear = [float(chain.linear_frequency(q)) for q in seeds]
     trial = tuple(exact(w * (1 + TRIAL), "frequency") for w in linear)
-    series = travelling_waves(chain, tuple(seeds), trial, 2 // chain.degree_step)
+    series = lindstedt(chain, tuple(seeds), trial, 2 // chain.degree_step)
     _, slopes = series.frequency_terms(np.zeros(len(seeds)))
     return np.asarray(slopes.sum(axis=0))
 
 
 def plain_waves(
     chain: Chain, frequencies: Sequence[Fraction], amplitudes: Mapping[int, float]
-) -> RingTorus:
+) -> FourierTorus:
     """The waves of the seeds alone; amplitudes : by seed, in the order of the frequencies."""
     seeds = tuple(amplitudes)
-    modes = np.array(seeds)
-    sines = np.sign(modes) * np.array(list(amplitudes.values()))
-    phases = dict.fromkeys(seeds, 0.0)
     each = np.eye(len(seeds), dtype=np.int64)
-    return RingTorus(
-        chain, seeds, tuple(frequencies), phases, dict(amplitudes), each, modes, sines
-    )
+    cosines = np.array(list(amplitudes.values()), dtype=float)[:, None]
+    return FourierTorus(chain, seeds, tuple(frequencies), each, cosines, travels=True)
 
 
-def short_waves(chain: Chain, amplitudes: Mapping[int, float], order: int) -> RingTorus:
+def short_waves(chain: Chain, amplitudes: Mapping[int, float], order: int) -> QTorus:
     """The series to an order about the frequencies that amplitudes shift, with these.
 
     Raises ResonantDivisor where a resonance of the ring is of so low an order.
@@ -60,5 +57,6 @@ def short_waves(chain: Chain, amplitudes: Mapping[int, float], order: int) -> Ri
         pairs = zip(seeds, shifts.tolist(), strict=True)
         shifted = [chain.linear_frequency(q) + mpmath.mpf(w) for q, w in pairs]
         omega = tuple(Fraction(text(w, DIGITS)) for w in shifted)
-    series = travelling_waves(chain, seeds, omega, order)
-    return cut_waves(series, plain_waves(chain, omega, amplitudes), order)
+    series = lindstedt(chain, seeds, omega, order)
+    at_rest = dict.fromkeys(seeds, 0.0)
+    return QTorus(series, dict(amplitudes), at_rest, frequency_order=order, order=order)

@@ -18,7 +18,10 @@ from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import Numbers, text, with_digits
 from symfpu.numbers.mpfr import at_the_face, inside
+from symfpu.numbers.public import public
+from symfpu.numbers.typed import order_of
 from symfpu.series.series import LindstedtSeries
+from symfpu.tori.columns import columns_of
 from symfpu.tori.quasiperiodic import QuasiPeriodic, show
 
 
@@ -39,7 +42,7 @@ class RootCertificate(Tabled):
     >>> solve_amplitudes(series).certificate.certified
     True
     >>> RootCertificate(False, {}, "the box does not shrink")
-    RootCertificate(certified=False, radius={}, reason='the box does not shrink')
+    RootCertificate(not proved: the box does not shrink)
     >>> solve_amplitudes(series).certificate.to_frame().seed.tolist()
     [1]
     """
@@ -48,17 +51,24 @@ class RootCertificate(Tabled):
     radius: Mapping[int, Any]  # mpf: doubles end at 1e-308
     reason: str = ""
 
+    def __repr__(self) -> str:
+        if not self.certified:
+            return f"RootCertificate(not proved: {self.reason})"
+        radii = ", ".join(f"A_{q} within {text(r, 2)}" for q, r in self.radius.items())
+        return f"RootCertificate(exactly one root, {radii})"
+
     def _table(self) -> Table:
         known = attributes(self, certified=self.certified, reason=self.reason)
         columns = {"seed": list(self.radius), "radius": list(self.radius.values())}
         return Table(columns, known)
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class QTorus(QuasiPeriodic):
     """The torus of a series at chosen amplitudes, cut at `order`.
 
-    Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
+    Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)); travelling waves on a ring.
 
     Made by `solve_amplitudes` and others (Eqs. qser, serabs1); dimensionless, phases in radians.
 
@@ -70,7 +80,8 @@ class QTorus(QuasiPeriodic):
     certificate : whether the root is proved to exist (series with digits only).
     warnings : reasons to doubt that this is a torus.
 
-    harmonics (H, s) and cosines (H, N-1) follow from the series; with digits all numbers are mpf.
+    harmonics (H, s) and cosines (H, N-1), on a ring (H, 1), follow from the series; with
+    digits all numbers are mpf.
 
     >>> from symfpu import Chain, lindstedt, solve_amplitudes
     >>> solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8))
@@ -117,6 +128,11 @@ class QTorus(QuasiPeriodic):
         return self.series.chain
 
     @property
+    def travels(self) -> bool:  # type: ignore[override]
+        """Series of a ring are of travelling waves."""
+        return self.chain.periodic
+
+    @property
     def seeds(self) -> tuple[int, ...]:
         """The seed modes."""
         return self.series.seeds
@@ -134,11 +150,16 @@ class QTorus(QuasiPeriodic):
 
     def doubted(self, warnings: tuple[str, ...]) -> QTorus:
         """The same torus with warnings; what was computed of it is kept."""
-        return self._with_known(replace(self, warnings=warnings), "_terms", "_residual")
+        doubts = tuple(warnings)
+        return self._with_known(replace(self, warnings=doubts), "_terms", "_residual")
 
     def cut_at(self, order: int) -> QTorus:
         """The same torus up to a lower order of its coordinates; its terms are kept."""
-        return self._with_known(replace(self, order=order))
+        lower = order_of(order)
+        if lower > self.order:
+            advice = "make the torus with a higher order"
+            raise InputError("order", lower, f"an integer in 0..{self.order}", advice)
+        return self._with_known(replace(self, order=lower))
 
     def _with_known(self, torus: QTorus, *names: str) -> QTorus:
         for name in ("terms_by_order", *names):
@@ -148,7 +169,7 @@ class QTorus(QuasiPeriodic):
 
     @cached_property
     def terms_by_order(self) -> tuple[tuple[Ints, Numbers], ...]:
-        """Harmonics (H, s) and terms of their coefficients (H, N-1) of every order from 0 on.
+        """Harmonics (H, s) and terms of their coefficients (H, C) of every order from 0 on.
 
         At least up to that of the torus; with digits, MPFR's numbers.
         """
@@ -158,20 +179,23 @@ class QTorus(QuasiPeriodic):
 
     @cached_property
     def _terms(self) -> tuple[Ints, Numbers]:
-        """Harmonics (H, s) and cosine coefficients (H, N-1), all orders summed."""
+        """Harmonics (H, s) and cosine coefficients (H, C), all orders summed."""
         parts = self.terms_by_order[: self.order + 1]
         keys = [self.series.grading.harmonic_keys(nu) for nu, _ in parts]
         _, first, index = np.unique(
             np.concatenate(keys), return_index=True, return_inverse=True
         )
         with self._context():
-            values = inside(self.numbers).zeros((len(first), self.chain.N - 1))
+            columns = parts[0][1].shape[1]
+            values = inside(self.numbers).zeros((len(first), columns))
             at = 0
             for nu, part in parts:
                 values[index[at : at + len(nu)]] += part
                 at += len(nu)
         harmonics = np.concatenate([nu for nu, _ in parts])[first]
-        return harmonics, with_digits(at_the_face(values), self.digits)
+        moving = columns_of(self.chain, self.seeds, harmonics, travels=self.travels).moving
+        coefficients = with_digits(at_the_face(values[moving]), self.digits)
+        return harmonics[moving], coefficients
 
     @property
     def harmonics(self) -> Ints:
@@ -180,7 +204,7 @@ class QTorus(QuasiPeriodic):
 
     @property
     def cosines(self) -> Numbers:
-        """The coefficients c_q[nu] of cos(nu.theta) in Q_q; shape (H, N-1)."""
+        """The coefficients c_q[nu] of cos(nu.theta) in Q_q, (H, N-1); of waves (H, 1)."""
         return self._terms[1]
 
 

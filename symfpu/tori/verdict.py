@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu import __version__
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.frames.attributes import Attributes, attributes
@@ -26,6 +27,7 @@ from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, text
 from symfpu.numbers.mpfr import at_the_face, inside
+from symfpu.numbers.public import public
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import (
@@ -33,6 +35,8 @@ from symfpu.tori.amplitudes import (
     frequency_orders,
     steps_of_frequencies,
 )
+from symfpu.tori.best_order import GRID_POINTS, angles_a_seed, some_angles
+from symfpu.tori.columns import Columns, columns_of
 from symfpu.tori.quasiperiodic import DOUBLES_RESIDUAL, GRID_POINTS_DIGITS
 from symfpu.tori.resummation import pade_poles, resum
 from symfpu.tori.torus import QTorus, RootCertificate, require_series_torus
@@ -48,14 +52,15 @@ SMALL_RESIDUAL = 1e-7
 FLOOR = 1e-12  # relative residual of doubles at which nothing more can be seen
 SMALLER_SHARE = 0.9  # of another residual, below which one is called smaller
 RATIO_ORDERS = 4  # how many of the last orders a growth ratio is fitted to
-# angles at which residuals by order are taken, about, in doubles, and at most
-GRID_POINTS, MOST_POINTS = 512, 1024
 # what closes the reasons of a verdict
 FALLING_BUT_UNSETTLED = (
     "the residual still falls, but the root has not settled: more orders are needed"
 )
 TRUNCATED_ROOT = "it is one of the truncated polynomial only"
 UNSETTLED = f"the root does not settle with the frequency order: {TRUNCATED_ROOT}"
+NO_TRUNCATION = "no truncation meets the equations of motion"
+# said of the series: a torus may be beside its root
+MAY_BE_FOUND = "this truncation is no torus; refine may find one beside it"
 STILL_FALLING = "the residual still falls: more orders would tell whether it goes on"
 
 
@@ -90,11 +95,13 @@ class LargestTerm:
         }
 
 
+@public
 @dataclass(frozen=True, eq=False)
 class Assessment(Shown, Tabled):
     """What `assess` found; dimensionless numbers.
 
     word : 'converged', 'asymptotic', 'not a torus', or 'undecided' where too few orders are known.
+        'not a torus' is said of this truncation: `refine` may find a torus beside it.
     best_order : coordinate order of the least residual. reasons : why this word, in sentences.
     order, frequency_order : of the torus' coordinates and frequencies.
     amplitudes : K -> A(K), (s,), by frequency order; differences : K -> Delta A(K), (s,)
@@ -112,7 +119,7 @@ class Assessment(Shown, Tabled):
     residuals, energy_errors : by coordinate order, (order + 1,), relative, over a coarse grid of
         angles; the reasons state the residual of the torus itself.
     resummed_residual : of the torus whose coefficients are Pade sums. certificate : of the
-        amplitudes.
+        amplitudes. chain : the model.
 
     >>> from symfpu import Chain, assess, lindstedt, solve_amplitudes
     >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8)
@@ -139,6 +146,7 @@ class Assessment(Shown, Tabled):
     energy_errors: Floats = field(repr=False)
     resummed_residual: float
     certificate: RootCertificate | None = field(repr=False)
+    chain: Chain | None = field(repr=False, default=None)
 
     @property
     def radius(self) -> float:
@@ -167,6 +175,7 @@ class Assessment(Shown, Tabled):
         return {
             "kind": type(self).__name__,
             "symfpu_version": __version__,
+            **({} if self.chain is None else self.chain.typed),
             "verdict": self.headline,
             "reasons": list(self.reasons),
             "best_order": self.best_order,
@@ -229,6 +238,7 @@ class Assessment(Shown, Tabled):
     def _attributes(self) -> Attributes:
         return attributes(
             self,
+            self.chain,
             verdict=self.word,
             best_order=self.best_order,
             reasons="; ".join(self.reasons),
@@ -249,6 +259,7 @@ def _short_list(values: Iterable[float]) -> list[float | None]:
     return [short(x) for x in values]
 
 
+@public
 def assess(
     series: LindstedtSeries,
     torus: QTorus,
@@ -260,13 +271,14 @@ def assess(
 
     series : with chosen frequencies. torus : made from this series by `solve_amplitudes`.
     resummed : also judge the torus of Pade sums (the slowest part for long series with digits);
-        else its residual is infinite.
+        else, and for travelling waves of a ring, its residual is infinite.
     progress : called as (label, fraction done).
 
     The residuals, relative and dimensionless, decide: they fall to the last order of a converged
     series, fall and rise again for an asymptotic one; a root that moves with the frequency order,
-    or whose best residual is large, is no torus. The paper judges by the sums of Eqs. serabs2,
-    serabs3; these are among the results.
+    or whose best residual is large, is no torus. On a ring residuals are over all angles of the
+    waves: two opposite ones may shift against each other. The paper judges by the sums of Eqs.
+    serabs2, serabs3; these are among the results.
     Raises InputError if the torus belongs to another series, or to none.
 
     >>> from symfpu import Chain, lindstedt, solve_amplitudes
@@ -336,7 +348,10 @@ def _evidence(torus: QTorus, found: list[_Order], resummed: bool) -> Assessment:
     growth = growth_of(terms, step)
     poles = {q: pade_poles(series, q, torus.amplitudes) for q in torus.seeds}
     pole_radius = pole_radius_of(poles, step)
-    resummed_residual = resum(torus).residual() if resummed else math.inf
+    sums_up = (
+        resummed and not series.chain.periodic
+    )  # Pade sums of the coordinates of waves are not known
+    resummed_residual = resum(torus).residual() if sums_up else math.inf
     return Assessment(
         word="undecided",
         best_order=int(np.argmin(residuals)),
@@ -355,6 +370,7 @@ def _evidence(torus: QTorus, found: list[_Order], resummed: bool) -> Assessment:
         energy_errors=np.array(energy_errors),
         resummed_residual=resummed_residual,
         certificate=torus.certificate,
+        chain=torus.chain,
     )
 
 
@@ -374,78 +390,59 @@ class _Order(NamedTuple):
 def _by_order(torus: QTorus, numbers: Arithmetic) -> Iterator[_Order]:
     series, chain = torus.series, torus.chain
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
-    number = _angles_a_seed(len(torus.seeds), numbers)
+    points = GRID_POINTS if numbers is DOUBLES else GRID_POINTS_DIGITS
+    number = angles_a_seed(len(torus.seeds), points)
     with numbers.context(torus.digits):
         sums = inside(numbers)
-        theta = sums.array(_angles(torus, number))
+        theta = sums.array(some_angles(torus, number))
         omega = np.array([sums.number(w) for w in torus.frequencies])
-        shape = (len(theta), chain.N - 1)
-        Q = sums.zeros(shape)
-        P = sums.zeros(shape)
-        second = sums.zeros(shape)
+        Q: Any = 0
+        P: Any = 0
+        second: Any = 0
         for k, (nu, exact) in enumerate(torus.terms_by_order[: torus.order + 1]):
             values = exact.astype(float) if numbers is DOUBLES else exact
             _, moduli = series.harmonic_terms(amplitudes, k, absolute=True)
             rates = nu @ omega
             angles = theta @ nu.T
-            cosines = sums.cos(angles)
-            sines = sums.sin(angles)
-            velocities = rates[:, None] * values
-            curvatures = (rates**2)[:, None] * values
-            Q = Q + sums.dot(cosines, values)
-            P = P - sums.dot(sines, velocities)
-            second = second - sums.dot(cosines, curvatures)
+            velocities = -rates[:, None] * values
+            curvatures = -(rates**2)[:, None] * values
+            columns = columns_of(chain, torus.seeds, nu, travels=torus.travels)
+            more, curving = columns.modes(angles, [values, curvatures], sums)
+            [moving] = columns.modes(angles, [velocities], sums, sine=True)
+            Q, P, second = Q + more, P + moving, second + curving
             positions = at_the_face(Q)
             force = chain.accelerations(positions)
             energy = chain.energy(positions, at_the_face(P))
-            largest = _largest(torus, k, nu, values)
-            S_1 = _column_sums(moduli, torus.seeds)
-            S_2 = _column_sums(np.abs(values), torus.seeds)
+            largest = _largest(torus, k, nu, values, columns)
+            S_1 = _seed_sums(moduli, torus.seeds, columns)
+            S_2 = _seed_sums(np.abs(values), torus.seeds, columns)
             residual = np.abs(at_the_face(second) - force).max() / np.abs(force).max()
             spread = (energy.max() - energy.min()) / abs(energy.mean())
             yield _Order(largest, S_1, S_2, float(residual), float(spread))
 
 
-def _column_sums(moduli: Numbers, seeds: tuple[int, ...]) -> dict[int, float]:
-    """The sums over harmonics of the seeds' columns of (H, N-1)."""
-    sums = {}
-    for q in seeds:
-        column = moduli[:, q - 1]
-        sums[q] = float(column.sum())
-    return sums
-
-
-def _angles_a_seed(seeds: int, numbers: Arithmetic) -> int:
-    """How many angles of each seed make a grid of about the wanted size, from 2 to 64."""
-    points = GRID_POINTS if numbers is DOUBLES else GRID_POINTS_DIGITS
-    number: int = round(points ** (1 / seeds))
-    return max(2, min(64, number))
-
-
-def _angles(torus: QTorus, number: int) -> Numbers:
-    """A tensor grid of angles.
-
-    For many seeds, where even two points for each are too many, points drawn at random.
-    """
-    s = len(torus.seeds)
-    if number**s <= MOST_POINTS:
-        pieces = list(torus.angle_grid(number))
-        return np.concatenate(pieces)
-    random = np.random.default_rng(s)
-    return 2 * np.pi * random.random((MOST_POINTS, s))
+def _seed_sums(
+    moduli: Numbers, seeds: tuple[int, ...], columns: Columns
+) -> dict[int, float]:
+    """The sums over harmonics of what (H, C) has in the modes of the seeds."""
+    return {q: float(columns.of_mode(q, moduli).sum()) for q in seeds}
 
 
 def _largest(
-    torus: QTorus, order: int, nu: NDArray[np.int64], values: Numbers
+    torus: QTorus,
+    order: int,
+    nu: NDArray[np.int64],
+    values: Numbers,
+    columns: Columns,
 ) -> LargestTerm | None:
-    sizes = np.abs(values).astype(float) * torus.chain.frequencies()
+    sizes = np.abs(values).astype(float) * columns.linear()
     first_largest = int(np.argmax(sizes))
     row, column = np.unravel_index(first_largest, sizes.shape)
     size = float(sizes[row, column])
     if size == 0:
         return None
     harmonic = tuple(map(int, nu[row]))
-    mode = int(column) + 1
+    mode = columns.mode_of(int(row), int(column))
     smallness = divisor(torus.chain, torus.seeds, torus.frequencies, mode, harmonic)
     return LargestTerm(order, size, mode, harmonic, smallness)
 
@@ -559,10 +556,10 @@ def _word(evidence: Assessment, step: int, floor: float) -> tuple[str, tuple[str
         return (
             ("undecided", (FALLING_BUT_UNSETTLED,))
             if falling
-            else ("not a torus", (UNSETTLED,))
+            else ("not a torus", (UNSETTLED, MAY_BE_FOUND))
         )
     if least > LARGE_RESIDUAL:
-        return "not a torus", ("no truncation meets the equations of motion",)
+        return "not a torus", (NO_TRUNCATION, MAY_BE_FOUND)
     if least < floor or (shrinking and least < SMALL_RESIDUAL):
         return "converged", ()
     if shrinking:

@@ -90,8 +90,6 @@ class Choice:
         refining = self._refining()
         names = [*names, *(["refine"] if refining else [])]
         imports = [f"from symfpu import {', '.join(sorted(names))}"]
-        if self.chain.periodic:
-            imports.append("from symfpu.tori.ring_verdict import assess_waves")
         lines = [*imports, "", f"chain = {self.chain_text}", *making, *refining]
         return "\n".join(lines) + "\n"
 
@@ -212,18 +210,9 @@ def _by_energy(choice: Choice) -> Making:
     return ["Chain", "assess", "torus_at_energy"], lines
 
 
-def _waves_by_frequencies(choice: Choice) -> Making:
-    typed = choice.by_seed
-    seeds, order = repr(tuple(typed)), str(choice.last_order)
-    making = call("travelling_waves", "chain", seeds, _tuple(typed), order)
-    lines = [f"series = {making}", "torus = travelling_torus(series)"]
-    names = ["Chain", "travelling_torus", "travelling_waves"]
-    return names, [*lines, "verdict = assess_waves(series, torus)"]
-
-
 MAKING = {
     (False, FREQUENCIES): _by_frequencies,
     (False, AMPLITUDES): _by_amplitudes,
     (False, ENERGY): _by_energy,
-    (True, FREQUENCIES): _waves_by_frequencies,
+    (True, FREQUENCIES): _by_frequencies,
 }

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from symfpu.errors import SymfpuError
-from symfpu.numbers.typed import exact
+from symfpu.numbers.typed import double
 from symfpu.workbench.choice import AMPLITUDES, ENERGY, FREQUENCIES, Choice
 from symfpu.workbench.parts import Numbers
 from symfpu.workbench.ranges import Range, energies, ranges, typed
@@ -208,7 +208,7 @@ def _prompt(widget: Any) -> Any:
 
 
 def _real(text: str) -> float:
-    return float(exact(text, "value"))
+    return double(text, "value")
 
 
 def _log(energy: float) -> float:

@@ -59,6 +59,11 @@ class Newest:
         self._asked = now
         return self._ticket
 
+    @property
+    def ticket(self) -> int:
+        """The newest."""
+        return self._ticket
+
     def current(self, ticket: int) -> bool:
         """Whether an answer is to the newest wish."""
         return ticket == self._ticket

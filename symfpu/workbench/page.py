@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from symfpu.errors import SymfpuError
+from symfpu.files.writing import write_bytes
 from symfpu.workbench.choice import Choice
 from symfpu.workbench.controls import FULL, SHAPE, Controls
 from symfpu.workbench.formulas import FORMS, NUMBERS, Formula, Term
@@ -35,7 +36,7 @@ from symfpu.workbench.texts import (
     problem_html,
     verdict_html,
 )
-from symfpu.workbench.worker import DONE, FILE, TERM, TORUS, Asker, Spares, Told
+from symfpu.workbench.worker import DONE, FILE, TERM, TORUS, Asker, Died, Spares, Told
 
 TITLES = {
     SPECTRUM: "Spectrum, over the groups D<sub>k</sub>",
@@ -193,7 +194,11 @@ class Page:
         if content is None:
             return
         path = Path(self._folder.name) / Path(self.load.filename or "torus.symfpu").name
-        path.write_bytes(content)
+        try:
+            write_bytes(path, content)
+        except SymfpuError as error:
+            self.notice.object = problem_html(str(error))
+            return
         choice = self.controls.choice.changed(bundle=str(path))
         self.controls.choice = choice
         self.changed(choice)
@@ -231,6 +236,9 @@ class Page:
                 self.busy.css_classes = ["idle"]
         elif isinstance(part, Told):
             self._tell(part)
+        elif isinstance(part, Died):
+            self._asked_term = None  # what was asked of it is lost
+            self.problem.object = problem_html(part.message)
         elif kind == TORUS:
             self._mark_stale(False)
             self._show_torus(part)

@@ -23,8 +23,6 @@ from symfpu.plots.spectra import spectrum
 from symfpu.plots.style import Axes, styled
 from symfpu.plots.tori import section
 from symfpu.plots.tori import torus as torus_surface
-from symfpu.series.travelling import TravellingSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.verdict import Assessment
 from symfpu.workbench.choice import Choice
 from symfpu.workbench.drawing import HEIGHT, WIDTH, NotKnown, Sheets, picture_svg
@@ -175,14 +173,8 @@ def _pictures(found: Solved, tell: Progress, sheets: Sheets) -> Iterator[Part]:
     verdict = judged(found, tell)
     yield from _judgement(found, verdict)
     yield _picture(SECTION, partial(section, best))
-    yield _picture(DIVISORS, partial(small_divisors, _with_divisors(found)))
+    yield _picture(DIVISORS, partial(small_divisors, best))
     yield _surface(best)
-
-
-def _with_divisors(found: Solved) -> Any:
-    """What knows the smallest divisors: of a ring the series, which its torus does not keep."""
-    travelling = isinstance(found.series, TravellingSeries)
-    return found.series if travelling and found.refined is None else found.best
 
 
 def _judgement(found: Solved, verdict: Assessment | None) -> Iterator[Part]:
@@ -253,7 +245,6 @@ def _written(found: Solved, language: str, folder: Path) -> File:
         path = save(folder / "torus.symfpu", torus, verdict=record, command=command)
     else:
         require_fixed_ends(torus.chain)
-        assert isinstance(torus, QuasiPeriodic)
         path = export_source(torus, language, folder / "torus")
     return File(path.name, path.read_bytes())
 

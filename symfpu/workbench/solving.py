@@ -10,22 +10,16 @@ from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import decimal
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.ring_tori import RefinedRingTorus
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
-from symfpu.series.travelling import TravellingSeries, travelling_waves
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.at_energy import torus_at_energy
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.ring_torus import RingTorus, travelling_torus
-from symfpu.tori.ring_verdict import assess_waves
 from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment, assess
 from symfpu.workbench.choice import AMPLITUDES, ENERGY, FREQUENCIES, Choice
-
-Torus = QuasiPeriodic | RingTorus
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +27,12 @@ class Solved:
     """A torus, its series where it has one, and that of Newton's method where it was wished."""
 
     choice: Choice
-    torus: Torus
-    series: LindstedtSeries | TravellingSeries | None
-    refined: RefinedTorus | RefinedRingTorus | None = None
+    torus: QuasiPeriodic
+    series: LindstedtSeries | None
+    refined: RefinedTorus | None = None
 
     @property
-    def best(self) -> Torus:
+    def best(self) -> QuasiPeriodic:
         """What is kept and exported."""
         return self.torus if self.refined is None else self.refined
 
@@ -56,11 +50,8 @@ def solved(
         found = near
     elif choice.bundle:
         found = _held(choice)
-    elif choice.chain.periodic:
-        choice.require_known()
-        found = _waves(choice, tell)
     else:
-        found = _fixed(choice, near, tell)
+        found = _solved(choice, near, tell)
     if not choice.refined:
         return found
     tell("Newton's method", NO_FRACTION)
@@ -83,15 +74,8 @@ def _held(choice: Choice) -> Solved:
     return Solved(choice, bundle.torus, bundle.series)
 
 
-def _waves(choice: Choice, tell: Progress) -> Solved:
-    typed = choice.by_seed
-    series = travelling_waves(
-        choice.chain, tuple(typed), tuple(typed.values()), choice.last_order, progress=tell
-    )
-    return Solved(choice, travelling_torus(series), series)
-
-
-def _fixed(choice: Choice, near: Solved | None, tell: Progress) -> Solved:
+def _solved(choice: Choice, near: Solved | None, tell: Progress) -> Solved:
+    choice.require_known()
     chain, typed, order = choice.chain, choice.by_seed, choice.last_order
     if choice.given == FREQUENCIES:
         omega = tuple(typed.values())
@@ -134,12 +118,10 @@ def judged(found: Solved, progress: Progress | None = None) -> Assessment | None
     """The verdict on the series; None where there is none."""
     if isinstance(found.torus, QTorus):
         return assess(found.torus.series, found.torus, progress=progress)
-    if isinstance(found.torus, RingTorus) and isinstance(found.series, TravellingSeries):
-        return assess_waves(found.series, found.torus, progress=progress)
     return None
 
 
-def described(torus: Torus, bundle: str) -> Choice:
+def described(torus: QuasiPeriodic, bundle: str) -> Choice:
     """A choice that says what a torus from a file is; the file itself stays what is shown."""
     law: dict[str, Any] = {"alpha": "0", "beta": "0", "potential": ""}
     law |= torus.chain.typed_law

@@ -10,6 +10,7 @@ import gc
 import signal
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from threading import Lock, Thread
@@ -23,6 +24,7 @@ from symfpu.workbench.parts import Bench, Problem
 TORUS, TERM, FILE = "torus", "term", "file"
 KINDS = (TORUS, TERM, FILE)
 TAKEN, DONE = None, "done"
+AGAIN = "another one takes its place at the next choice"
 LEAST_PAUSE = 0.1  # seconds between two words of progress
 
 Message = tuple[str, int, Any]
@@ -33,6 +35,13 @@ class Told:
 
     def __init__(self, label: str, fraction: float) -> None:
         self.label, self.fraction = label, fraction
+
+
+class Died:
+    """The process has died, for a page; ending : how, in words."""
+
+    def __init__(self, ending: str) -> None:
+        self.message = f"the computing process has died ({ending}); {AGAIN}"
 
 
 def work(connection: Connection) -> None:
@@ -103,10 +112,25 @@ class Process:
         self._process.start()
         other.close()
 
-    def end(self) -> None:
-        """Ends it at once, whatever it does."""
+    @property
+    def alive(self) -> bool:
+        return self._process.is_alive()
+
+    @property
+    def ending(self) -> str:
+        """How a process ended that has, in words."""
+        self._process.join()
+        code = self._process.exitcode or 0
+        return f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+
+    def kill(self) -> None:
+        """Ends it at once, whatever it does; who listens to it finds the connection at its end."""
         self._process.kill()
         self._process.join()
+
+    def end(self) -> None:
+        """The same for one that nobody listens to."""
+        self.kill()
         self.connection.close()
 
 
@@ -120,8 +144,12 @@ class Spares:
     def take(self) -> Process:
         """A process; the next one is started."""
         with self._lock:
-            taken, self._spare = self._spare or Process(), Process()
+            taken, self._spare = self._spare, Process()
+        if taken is not None and taken.alive:
             return taken
+        if taken is not None:
+            taken.end()
+        return Process()
 
     def end(self) -> None:
         """Ends the spare one."""
@@ -134,6 +162,9 @@ class Spares:
 class Asker:
     """What a page asks: the newest wish of each kind counts, and slow ones can be given up.
 
+    A process that has died is replaced at the next wish. The page hears `Died`, and that what was
+    asked of it is over.
+
     hear : called as (kind, ticket, part) from a thread of its own, with what answers the newest
         wishes. Who hears later than that asks `current`.
     """
@@ -143,6 +174,8 @@ class Asker:
         self._newest = {kind: Newest() for kind in KINDS}
         self._wishes: dict[str, Message] = {}  # the newest, as long as they are not done
         self._lock = Lock()
+        self._over = False
+        self._told_of: Process | None = None  # a process of whose death the page has heard
         self._start()
 
     def _start(self) -> None:
@@ -154,14 +187,22 @@ class Asker:
         with self._lock:
             ticket = self._newest[kind].ask(time.monotonic())
             self._wishes[kind] = (kind, ticket, arguments)
-            self._send(self._wishes[kind])
+            if self._process.alive:
+                self._send(self._wishes[kind])
+            else:
+                if self._process is not self._told_of:
+                    died = Died(self._process.ending)
+                    self._hear(TORUS, self._newest[TORUS].ticket, died)
+                self._renew()
+                self._send_all()
 
     def _send(self, message: Message) -> None:
-        try:
+        with suppress(OSError):  # it has died: its listener hears of that, and says so
             self._process.connection.send(message)
-        except OSError:
-            ended = Problem("the computing process has ended; reload the page")
-            self._hear(message[0], message[1], ended)
+
+    def _send_all(self) -> None:
+        for message in self._wishes.values():
+            self._send(message)
 
     def current(self, kind: str, ticket: int) -> bool:
         """Whether an answer is still one to the newest wish."""
@@ -181,27 +222,49 @@ class Asker:
             now = time.monotonic()
             if any(newest.stuck(now) for newest in self._newest.values()):
                 self._renew()
-                for message in self._wishes.values():
-                    self._send(message)
+                self._send_all()
             return max(newest.seconds(now) for newest in self._newest.values())
 
     def _renew(self) -> None:
         for newest in self._newest.values():
             newest.begun(0)
-        self._process.end()
+        self._process.kill()
         self._start()
 
     def end(self) -> None:
         """The page is closed."""
         with self._lock:
-            self._process.end()
+            self._over = True
+            self._process.kill()
 
     def _listen(self, process: Process) -> None:
+        """Hears a process until it has ended.
+
+        The connection is closed here alone: closed under recv, its number would be that of the next
+        one, whose messages would be taken.
+        """
         try:
             while True:
                 self._answered(process, *process.connection.recv())
-        except (EOFError, OSError, TypeError):
-            return  # it was ended; TypeError where that closed the connection under recv
+        except (EOFError, OSError):
+            self._died(process)
+        finally:
+            process.connection.close()
+
+    def _died(self, process: Process) -> None:
+        """Says what became of a process, if it was not ended by us, and answers what was asked."""
+        with self._lock:
+            if process is not self._process or self._over:
+                return
+            self._told_of = process
+            lost = list(self._wishes.values())
+            self._wishes.clear()
+            for kind, ticket, _ in lost:
+                self._newest[kind].done(ticket)
+            told = self._newest[TORUS].ticket
+        for kind, ticket, _ in lost:
+            self._hear(kind, ticket, DONE)
+        self._hear(TORUS, told, Died(process.ending))
 
     def _answered(self, process: Process, kind: str, ticket: int, part: Any) -> None:
         with self._lock:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symfpu import Chain, InputError, actions, frequency_shift, travelling_torus, travelling_waves, twist_at_rest
+from symfpu import Chain, InputError, actions, frequency_shift, lindstedt, solve_amplitudes, twist_at_rest
 from symfpu.action_angle.at_rest import definite_range
 from tests.tolerances import NEXT_ORDER_OF_ACTIONS, RANGE_END, ROUNDING
 
@@ -40,13 +40,6 @@ def test_the_signature_of_the_beta_chain(packet):
     expected = (pairs + 1, len(seeds) - pairs - 1, 0)
     assert twist_at_rest(Chain(N, beta=2), seeds).signature == expected
     assert twist_at_rest(Chain(N, beta=-2), seeds).signature == (expected[1], expected[0], 0)
-
-
-@pytest.mark.parametrize("N", [2, 3, 8])
-def test_toda_is_a_multiple_of_one(N):
-    found = twist_at_rest(Chain(N, potential="toda:1/2"))
-    assert found.matrix == pytest.approx(np.eye(N - 1) / (4 * N), abs=ROUNDING)
-    assert found.signature == (N - 1, 0, 0)
 
 
 def test_exact_zeros():
@@ -104,8 +97,8 @@ def test_waves_of_rings_have_the_published_hessian(N, modes, alpha, beta):
     for size in (1e-3, 1e-4):
         wanted = size * np.arange(1.0, len(modes) + 1)
         omega = linear + published_hessian(N, alpha, beta, modes) @ wanted
-        series = travelling_waves(chain, modes, tuple(f"{w:.17f}" for w in omega), 2)
-        found = actions(travelling_torus(series))
+        series = lindstedt(chain, modes, tuple(f"{w:.17f}" for w in omega), 2)
+        found = actions(solve_amplitudes(series))
         assert [float(found[q]) for q in modes] == pytest.approx(wanted, rel=NEXT_ORDER_OF_ACTIONS * size)
 
 

@@ -7,19 +7,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import (
-    Chain,
-    InputError,
-    alignment_indices,
-    foretold_indices,
-    normal_modes,
-    refine,
-    torus_at_amplitudes,
-)
+from symfpu import Chain, InputError, alignment_indices, foretold_indices, normal_modes, refine, torus_at_amplitudes
 from symfpu.action_angle.foretold import flow_of, settled_text
 from symfpu.dynamics.alignment import random_frame
 from symfpu.dynamics.dimension import ODDNESS
-from tests.tolerances import FORETOLD, FORETOLD_AT_REST, SAME_VOLUME, SLOPE
+from tests.refusals import each, refused
+from tests.tolerances import FORETOLD, FORETOLD_AT_REST, SLOPE
 
 CHAIN = Chain(8, alpha="0.3")
 SEEDS = {1: {2: "0.3"}, 2: {1: "0.3", 2: "0.2"}}
@@ -101,15 +94,6 @@ def test_what_a_time_can_show():
 
 
 @pytest.mark.long
-def test_growth_is_at_most_the_first_rate():
-    found = foretold_indices(torus(2), TIMES, vectors=4)
-    assert np.all(np.diff(found.rates) <= 0)
-    late = TIMES > 1e9
-    largest = np.exp(found.growth[late]) / TIMES[late]
-    assert largest.max() < 2 * found.rates[0]
-
-
-@pytest.mark.long
 def test_full_tori_and_two_particles():
     """No normal directions at all."""
     full = refine(torus_at_amplitudes(Chain(3, beta=1), {1: "0.2", 2: "0.3"}, 4))
@@ -118,26 +102,14 @@ def test_full_tori_and_two_particles():
     assert foretold_indices(alone, 1e8).verdict == "regular, dimension 1"
 
 
-@pytest.mark.parametrize(
-    ("change", "name"),
-    [
-        ({"T": 10.0}, "T"),
-        ({"T": 1e16}, "T"),
-        ({"T": "long"}, "T"),
-        ({"T": -TIMES}, "T"),
-        ({"T": TIMES[:20]}, "samples"),
-        ({"vectors": 15}, "vectors"),
-        ({"seed": -1}, "seed"),
-        ({"samples": 3}, "samples"),
-        ({"start": "soon"}, "start"),
-        ({"normal": 3}, "normal"),
-        ({"solution": 3}, "solution"),
-    ],
-)
-def test_bad_input_is_refused(change, name):
-    arguments = {"solution": torus(1), "T": 1e3} | change
-    with pytest.raises(InputError, match=rf"^{name} = "):
-        foretold_indices(**arguments)
+@each(T=[10.0, 1e16, "long", -TIMES], samples=[3], vectors=[15], seed=[-1], start=["soon"], normal=[3], solution=[3])
+def test_bad_input_is_refused(name, value):
+    refused(foretold_indices, name, value, solution=torus(1), T=1e3)
+
+
+def test_few_times_are_refused():
+    with pytest.raises(InputError, match=r"^samples = "):
+        foretold_indices(torus(1), TIMES[:20])
 
 
 def test_what_is_no_refined_torus_is_refused():
@@ -161,15 +133,6 @@ def test_too_early_a_time_is_refused():
     found = foretold_indices(torus(2), TIMES, vectors=4)
     with pytest.raises(InputError, match=r"^T = "):
         found.slopes(2.0)
-
-
-@pytest.mark.long
-def test_volumes_do_not_depend_on_how_many_vectors_follow():
-    """Of one frame; another number of vectors is another random frame."""
-    flow_times = TIMES[::5]
-    one = foretold_indices(torus(2), flow_times, vectors=5)
-    again = foretold_indices(torus(2), TIMES, vectors=5)
-    assert one.log10_gali == pytest.approx(again.log10_gali[::5], abs=SAME_VOLUME)
 
 
 def test_what_has_not_settled_says_so():

@@ -1,25 +1,12 @@
-"""The twist: symmetric, and that of Toda's spectral curve; series and Newton agree as far as the series is a torus."""
+"""The twist: symmetric, and that of Toda's spectral curve, and that of two tori nearby."""
 
 import mpmath
 import numpy as np
 import pytest
 
-from symfpu import (
-    Chain,
-    FourierTorus,
-    InputError,
-    actions,
-    birkhoff_form,
-    breather_at_amplitude,
-    periodic_orbit_digits,
-    refine,
-    refine_at_amplitudes,
-    toda_torus,
-    torus_at_amplitudes,
-    twist,
-)
-from symfpu.action_angle import precise_twist
-from symfpu.action_angle.newton_twist import NoTwist
+import symfpu
+from symfpu import Chain, actions, breather_at_amplitude, periodic_orbit_digits, refine, refine_at_amplitudes, torus_at_amplitudes, twist
+from symfpu.refinement import iterative_refinement
 from symfpu.refinement.linear_system import SMALLEST_BLOCK
 from tests.action_angle.test_actions import SEEDS, refined_toda
 from tests.tolerances import NEWTON_TWIST, PRECISE_TWIST, ROUNDING, SLOPE, TWIST_DIFFERENCE
@@ -39,46 +26,17 @@ def test_toda_by_its_spectral_curve():
             with mpmath.workdps(40):
                 moved = [exact[n] + sign * step * (n == q) for n in SEEDS]
                 typed = [mpmath.nstr(x, 30) for x in moved]
-            ends.append(toda_torus(torus.chain, SEEDS, actions=typed, digits=30).frequencies)
+            ends.append(symfpu.toda_torus(torus.chain, SEEDS, actions=typed, digits=30).frequencies)
         slopes = [float((ends[0][n] - ends[1][n]) / (2 * step)) for n in SEEDS]
         assert found.matrix[:, column] == pytest.approx(slopes, rel=TWIST_DIFFERENCE)
     assert found.definiteness == "positive definite"
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("law", ["alpha", "beta", "both"])
-def test_symmetry_and_the_series(law):
-    """The series' twist misses symmetry, and Newton's twist, by the order it is cut at."""
-    misses, asymmetries = [], []
-    for size in ("0.1", "0.2"):
-        torus = torus_at_amplitudes(Chain(8, **CASES[law]), {1: size, 2: size}, 4)
-        exact, series = twist(refine(torus)), twist(torus)
-        assert exact.asymmetry < NEWTON_TWIST
-        misses.append(np.abs(series.matrix - exact.matrix).max())
-        asymmetries.append(series.asymmetry)
-    order = 4 if law != "beta" else 8  # of the first frequency correction left out, in the amplitudes, less 2
-    assert np.log2(misses[1] / misses[0]) > order - SLOPE
-    assert np.log2(asymmetries[1] / asymmetries[0]) > order - SLOPE
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("seeds", [(1,), (1, 2)])
-def test_digits_of_a_series(seeds):
-    """The program in power series agrees with the compiled one."""
-    amplitudes = dict.fromkeys(seeds, "0.2")
-    chain = Chain(4, alpha="0.3", beta="0.2")
-    doubles, precise = (twist(torus_at_amplitudes(chain, amplitudes, 4, digits=n)) for n in (None, 30))
-    assert precise.matrix.astype(float) == pytest.approx(doubles.matrix, rel=NEWTON_TWIST)
-    assert precise.eigenvalues.astype(float) == pytest.approx(doubles.eigenvalues, rel=NEWTON_TWIST)
-    assert float(precise.isoenergetic_determinant) == pytest.approx(doubles.isoenergetic_determinant, rel=NEWTON_TWIST)
-    assert precise.matrix[0, 0].digits == 30
 
 
 @pytest.mark.parametrize("N", [2, 5])
 def test_a_breather_has_the_twist_of_the_normal_form(N):
     """Of degree 3 in the actions: what is left falls as A^4."""
     chain = Chain(N, alpha="0.3", beta="0.5")
-    form = birkhoff_form(chain, (1,), 3, digits=20).coefficients
+    form = symfpu.birkhoff_form(chain, (1,), 3, digits=20).coefficients
     misses = []
     for A in ("0.05", "0.1"):
         found = twist(breather_at_amplitude(chain, 1, A))
@@ -112,7 +70,7 @@ def missed(found, ends):
         return float(abs(turned - found.matrix @ further).max() / abs(turned).max())
 
 
-@pytest.mark.parametrize(("law", "seed"), [("alpha", 1), ("beta", 2)])
+@pytest.mark.parametrize(("law", "seed"), [pytest.param("alpha", 1, marks=pytest.mark.long), ("beta", 2)])
 def test_digits_of_a_torus(law, seed):
     """Symmetric to them, and what two tori nearby have."""
     chain, amplitudes = Chain(4, **CASES[law]), {1: "0.1", 2: "0.1"}
@@ -134,10 +92,10 @@ def test_digits_of_a_breather():
     assert missed(found, ends) < PRECISE_TWIST
 
 
-def test_sweeps_that_gain_nothing_are_named(monkeypatch):
+def test_steps_that_gain_nothing_are_named(monkeypatch):
     orbit = periodic_orbit_digits(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), 20)
-    monkeypatch.setattr(precise_twist, "SWEEPS", 1)
-    with pytest.raises(NoTwist, match=r"the sweeps in fixed point leave 1e-.*in_doubles"):
+    monkeypatch.setattr(iterative_refinement, "MOST_STEPS", 1)
+    with pytest.raises(symfpu.NoTwist, match=r"iterative refinement stops at a residual or update of 1e-.*in_doubles"):
         twist(orbit)
 
 
@@ -155,6 +113,8 @@ def test_an_even_potential_with_more_harmonics_than_a_block_has():
 
 def test_what_is_not_refined_is_refused():
     torus = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.8"}, 4)
-    rough = FourierTorus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines)
-    with pytest.raises(InputError, match="refine"):
-        twist(rough)
+    rough = symfpu.FourierTorus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines)
+    precise = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.8"}, 4, digits=20)
+    for solution in (torus, rough, precise):
+        with pytest.raises(symfpu.InputError, match=r"residual .*: allowed is .* below 1e-08.*refine\(solution\)"):
+            twist(solution)

@@ -4,16 +4,11 @@ from fractions import Fraction
 
 import flint
 import mpmath
-import numpy as np
-import pytest
 import symengine as se
 from hypothesis import given
 from hypothesis import strategies as st
 
 from symfpu.algebra.polynomials import evaluate, powers_of, rescaled, square_root
-from symfpu.chain.chain import Chain
-from symfpu.series.lindstedt import lindstedt
-from tests.tolerances import DIFFERENCE_OF_FIFTY, SUM_OF_FORTY
 
 rationals = st.fractions(-3, 3, max_denominator=20)
 exponents = st.tuples(st.integers(0, 3), st.integers(0, 3))
@@ -67,21 +62,12 @@ def test_value_and_gradient_are_exact(polynomial, point):
     assert gradient[1] == sum(c * j * x**i * y ** (j - 1) for (i, j), c in polynomial.items() if j)
 
 
-@given(points, st.integers(0, 5))
-def test_powers(point, highest):
-    assert powers_of(point, highest, Fraction(1)) == [[x**n for n in range(highest + 1)] for x in point]
-
-
 @given(polynomials, st.tuples(linear, linear), points, st.sampled_from([1.0, -1.0]))
 def test_rescaling_is_a_change_of_variables(polynomial, slopes, point, sign):
     scaled = rescaled(polynomial, list(slopes), sign)
     here, _ = evaluate(scaled, powers_of(point, 3, Fraction(1)))
     there, _ = evaluate(polynomial, powers_of([s * x for s, x in zip(slopes, point, strict=True)], 3, Fraction(1)))
     assert here == int(sign) * there
-
-
-def test_the_empty_polynomial_is_zero():
-    assert evaluate({}, powers_of((Fraction(2),), 1, Fraction(1))) == (0, [0])
 
 
 def test_the_binomial_series_in_every_kind_of_number():
@@ -93,28 +79,3 @@ def test_the_binomial_series_in_every_kind_of_number():
         roots = square_root(squares, kind(1))
         for k, (root, value) in enumerate(zip(roots, expected, strict=True)):
             assert root[(k,)] == kind(value.numerator) / kind(value.denominator)
-
-
-@pytest.mark.parametrize(
-    ("chain", "seeds", "frequencies"),
-    [(Chain(8, "-0.3", "0.2"), (1, 2), ("0.395", "0.775")), (Chain(8, beta="-0.3"), (1, 3), ("0.388", "1.105"))],
-    ids=str,
-)
-def test_frequency_terms_of_a_series_are_its_coefficients(chain, seeds, frequencies):
-    """mu^k omega_q^(k)(A) and its slopes by A^2, against frequency_coefficients and differences; signs of mu included."""
-    series = lindstedt(chain, seeds, frequencies, 5, digits=40)
-    with mpmath.workdps(50):
-        A = [mpmath.mpf("0.31"), mpmath.mpf("0.17")]
-        squares = np.array([a**2 for a in A], dtype=object)
-        terms, slopes = series.frequency_terms(squares)
-        mu = mpmath.mpf(chain.alpha.numerator) / chain.alpha.denominator / mpmath.sqrt(16) if chain.alpha else mpmath.mpf("-0.3") / 16
-        step = mpmath.mpf(10) ** -18
-        for k in range(6):
-            for i, q in enumerate(seeds):
-                powers, values = series.frequency_coefficients(q, k)
-                expected = sum(v * A[0] ** int(e[0]) * A[1] ** int(e[1]) for e, v in zip(powers, values, strict=True))
-                assert abs(terms[k, i] - mu**k * expected) < SUM_OF_FORTY
-                for j in range(2):
-                    shift = np.array([step * int(j == n) for n in range(2)], dtype=object)
-                    up, down = series.frequency_terms(squares + shift)[0], series.frequency_terms(squares - shift)[0]
-                    assert abs(slopes[k, i, j] - (up[k, i] - down[k, i]) / (2 * step)) < DIFFERENCE_OF_FIFTY

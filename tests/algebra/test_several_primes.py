@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from symfpu.algebra import kernels, one_seed
+from symfpu.algebra import kernels
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.several_primes import EXACT, largest_prime, products_between_reductions
 from symfpu.algebra.words import ResidueBasis
@@ -49,22 +49,6 @@ def test_the_largest_sums_stay_exact(seeds, top, symmetric):
             assert abs(found[lane]) <= p // 2
 
 
-def test_the_largest_sums_of_one_seed_stay_exact():
-    top = 301
-    grading = Grading(seeds=1, degree=top)
-    values, moduli = factors(grading, ResidueBasis(100, largest_prime(top)))
-    splits = np.array([(d, top - d) for d in range(1, top)])
-    first = int(grading.canonical(top)[0])
-    tiles = np.arange(first, top + 1, one_seed.TILE)
-    ours, counts = np.zeros((2, top + 1, WIDTH))
-    lanes, ones = (0.0,) * WIDTH, np.ones(values.shape)
-    one_seed.convolve(lanes, values, values, ours, splits, grading.first_row, tiles, moduli, products_between_reductions(top))
-    one_seed.convolve(lanes, ones, ones, counts, splits, grading.first_row, tiles)
-    for found, count in zip(ours[first:], counts[first:], strict=True):
-        for lane, p in enumerate(moduli):
-            assert (int(found[lane]) - int(count[lane]) * int(values[0, lane]) ** 2) % int(p) == 0
-
-
 @pytest.mark.parametrize(("seeds", "top"), [(1, 12), (2, 9), (3, 6), (4, 6)])
 @pytest.mark.parametrize("modular", [True, False])
 def test_products_with_a_diagonal_series_are_those_of_all_its_rows(seeds, top, modular):
@@ -92,17 +76,3 @@ def test_products_with_a_diagonal_series_are_those_of_all_its_rows(seeds, top, m
     assert theirs.any()
     assert not (difference % prime if modular else difference).any()
     assert not modular or np.abs(ours).max() <= prime / 2
-
-
-@pytest.mark.parametrize(("primes", "half", "width"), [(3, 16, 32), (5, 7, 8), (2, 3, 32), (4, 20, 8)])
-def test_rows_come_back_from_lanes(primes, half, width):
-    """Also those of the conjugates; lanes that are over, and other rows, stay as they are."""
-    rows, conjugates = np.array([4, 1]), np.array([0, 3])
-    values = np.random.default_rng(1).integers(1, 1000, (primes, 2, half)).astype(float)
-    target = np.zeros((-(-primes * half // width), 6, width), dtype=np.float32)
-    kernels.to_lanes(values, target, rows, conjugates)
-    assert np.count_nonzero(target) == 2 * values.size
-    for some in (rows, conjugates):
-        back = np.empty_like(values)
-        kernels.from_lanes(target, back, some, 2.0)
-        assert (back == 2 * values).all()

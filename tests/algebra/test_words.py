@@ -22,7 +22,7 @@ from symfpu.algebra.words import (
 from tests.tolerances import EPS, NEAREST
 
 BITS = 150
-LARGEST = 2**40
+LARGEST = 2**23
 BASIS = ResidueBasis(BITS, LARGEST)
 
 within = st.integers(-(2**BITS) + 1, 2**BITS - 1)
@@ -49,30 +49,22 @@ def test_the_primes_are_distinct_primes_below_the_largest_and_are_enough():
     assert prod(BASIS.primes) > 2 ** (BITS + 1)
 
 
-@given(lists)
+@given(lists | st.lists(st.integers(-(2**900), 2**900), max_size=5))
 def test_residues_of_integers_are_the_centred_remainders(integers):
+    """Integers longer than those of the basis go by Horner's rule."""
     for p, residues in zip(BASIS.primes, BASIS.of_integers(row(integers)), strict=True):
-        assert np.abs(residues).max() <= p // 2
+        assert np.abs(residues).max(initial=0) <= p // 2
         assert [int(r) % p for r in residues] == [x % p for x in integers]
 
 
 @given(lists)
-def test_chinese_remainders_give_the_integers_back(integers):
-    limbs = BASIS.limbs(BASIS.of_integers(row(integers)))
-    assert of_limbs(limbs) == integers
-    assert np.abs(limbs[:-1]).max() <= 2 ** (LIMB_BITS - 1)
-
-
-@given(lists)
-def test_limbs_give_the_residues_back(integers):
+def test_limbs_and_words_give_integers_and_residues_back(integers):
     residues = BASIS.of_integers(row(integers))
-    assert (BASIS.residues(BASIS.limbs(residues.copy())) == residues).all()
-
-
-@given(lists)
-def test_words_give_the_integers_back(integers):
-    words = words_of(BASIS.limbs(BASIS.of_integers(row(integers))))
-    assert of_words(words) == integers
+    limbs = BASIS.limbs(residues.copy())
+    words = words_of(limbs)
+    assert of_limbs(limbs) == of_words(words) == integers
+    assert (BASIS.residues(limbs) == residues).all()
+    assert np.abs(limbs[:-1]).max() <= 2 ** (LIMB_BITS - 1)
     assert np.abs(words).max() < 2**WORD_BITS
 
 
@@ -84,32 +76,19 @@ def test_dropped_limbs_round_to_the_nearest(integers, drop):
     assert all(abs(Fraction(x, unit) - r) <= NEAREST for x, r in zip(integers, rounded, strict=True))
 
 
-@given(st.integers(0, 2 ** (BITS - 60)), st.sampled_from([-1, 1]), st.sampled_from([-1, 1]))
-def test_rounding_just_off_the_half_goes_to_the_nearer_side(whole, sign, side):
-    """A quarter of a unit off the half nobody may go wrong."""
-    unit = 2**40
-    number = sign * (whole * unit + unit // 2 + side * unit // 4)
-    (rounded,) = of_limbs(BASIS.limbs(BASIS.of_integers(row([number])), drop=2))
-    assert rounded == sign * (whole + (side > 0))
-
-
 @given(st.integers(2 ** (BITS + 1), 2 ** (BITS + 2)), st.sampled_from([-1, 1]), lists)
 def test_an_integer_beyond_the_promised_bits_is_seen(number, sign, others):
     """The basis has four bits to spare: up to eight times the promised range nothing wraps around unseen."""
-    with pytest.raises(OverflowError, match="range"):
-        BASIS.limbs(BASIS.of_integers(row([*others, sign * number])))
-
-
-@pytest.mark.parametrize("size", [2**BITS - 1, 2 ** (BITS - 1), 1, 0])
-@pytest.mark.parametrize("sign", [1, -1])
-def test_the_ends_of_the_promised_range_pass(size, sign):
-    assert of_limbs(BASIS.limbs(BASIS.of_integers(row([sign * size])))) == [sign * size]
+    residues = BASIS.of_integers(row([*others, sign * number]))
+    for leave in (BASIS.limbs, lambda x: BASIS.round_in_place(x, np.ones(len(others) + 1, dtype=bool), LIMB_BITS)):
+        with pytest.raises(OverflowError, match="range"):
+            leave(residues.copy())
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("bits", "largest"), [(40, 2**40), (400, 2**40), (4000, 2**40), (12_000, 2**40), (400, 2**33), (4000, 5_000_011)])
+@pytest.mark.parametrize(("bits", "largest"), [(40, 2**23), (400, 2**27), (4000, 5_000_011), (25_000, 2**23)])
 def test_round_trips_at_every_size_of_the_basis(bits, largest):
-    """Three hundred primes: sums of limbs stay exact in doubles."""
+    """Up to nearly as many primes as doubles hold: sums of limbs stay exact."""
     basis = ResidueBasis(bits, largest)
     generator = np.random.default_rng(bits)
     integers = [int.from_bytes(generator.bytes(bits // 8), "little", signed=True) for _ in range(5)] + [2**bits - 1, 1 - 2**bits]
@@ -165,93 +144,60 @@ def test_floats_of_entries_that_only_fit_with_their_exponent():
     assert IntegerTable.of(row([[1]])).floats(-4000).tolist() == [[0.0]]
 
 
-SMALL = ResidueBasis(BITS, 2**23)
+FIRST = BASIS.beginning(BITS)
 
 
-FIRST = {basis: ResidueBasis(BITS, max(basis.primes)) for basis in (SMALL, BASIS)}
-
-
-@pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
 @given(st.lists(st.tuples(within, st.booleans()), max_size=300), st.integers(0, BITS // LIMB_BITS))
-def test_rounding_in_place_is_that_by_limbs(basis, entries, drop):
+def test_rounding_in_place_is_that_by_limbs(entries, drop):
     """Entries that are not wanted become zero, and have no words."""
     integers, wanted = [x for x, _ in entries], np.array([kept for _, kept in entries], dtype=bool)
-    residues = basis.of_integers(row(integers))
-    limbs = basis.limbs(residues[:, wanted], drop)
+    residues = BASIS.of_integers(row(integers))
+    limbs = BASIS.limbs(residues[:, wanted], drop)
     expected = np.zeros_like(residues)
-    expected[:, wanted] = basis.residues(limbs)
+    expected[:, wanted] = BASIS.residues(limbs)
     again = residues.copy()
-    words = basis.rounded_words(residues, wanted, LIMB_BITS * drop, FIRST[basis])
-    basis.round_in_place(again, wanted, LIMB_BITS * drop)
+    words = BASIS.rounded_words(residues, wanted, LIMB_BITS * drop, FIRST)
+    BASIS.round_in_place(again, wanted, LIMB_BITS * drop)
     assert np.array_equal(residues, expected)
     assert np.array_equal(again, expected)
     assert of_words(words) == of_words(words_of(limbs))
 
 
-@pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
 @given(st.lists(st.tuples(within, st.booleans()), max_size=300))
-def test_sizes_are_moduli_over_the_product_of_all_primes(basis, entries):
+def test_sizes_are_moduli_over_the_product_of_all_primes(entries):
     """Those before rounding; zero where they are not wanted."""
     integers, wanted = [x for x, _ in entries], np.array([kept for _, kept in entries], dtype=bool)
     sizes = np.full(len(entries), np.nan)
-    basis.round_in_place(basis.of_integers(row(integers)), wanted, LIMB_BITS, sizes)
+    BASIS.round_in_place(BASIS.of_integers(row(integers)), wanted, LIMB_BITS, sizes)
     for x, kept, size in zip(integers, wanted, sizes, strict=True):
         assert size == 0 or kept
-        assert abs(Fraction(abs(x) * int(kept), prod(basis.primes)) - Fraction(float(size))) < SIZE_ERROR
+        assert abs(Fraction(abs(x) * int(kept), prod(BASIS.primes)) - Fraction(float(size))) < SIZE_ERROR
 
 
-@pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
 @given(lists, st.integers(0, BITS + LIMB_BITS))
-def test_any_number_of_places_is_rounded_to_the_nearest(basis, integers, places):
+def test_any_number_of_places_is_rounded_to_the_nearest(integers, places):
     """Half a unit, and what the limbs below the highest one add to it; words are those of the residues."""
     bits = whole_places(places)
     assert places <= bits < places + LEAST_TOP
-    residues = basis.of_integers(row(integers))
-    words = of_words(basis.rounded_words(residues, np.ones(len(integers), dtype=bool), bits, FIRST[basis]))
+    residues = BASIS.of_integers(row(integers))
+    words = of_words(BASIS.rounded_words(residues, np.ones(len(integers), dtype=bool), bits, FIRST))
     assert all(abs(Fraction(x, 2**bits) - r) <= NEAREST for x, r in zip(integers, words, strict=True))
-    assert np.array_equal(residues, basis.of_integers(row(words)))
+    assert np.array_equal(residues, BASIS.of_integers(row(words)))
 
 
-@pytest.mark.parametrize("basis", [SMALL, BASIS], ids=["small primes", "large primes"])
 @given(st.lists(st.tuples(st.integers(0, 3), st.booleans()), min_size=1, max_size=50))
-def test_products_with_factors_in_their_places(basis, entries):
+def test_products_with_factors_in_their_places(entries):
     factors = row([-(2**60), 5, 0, 2**31])
     places, wanted = np.array([at for at, _ in entries]), np.array([kept for _, kept in entries])
-    residues = basis.of_integers(row([7**20 + n for n in range(len(entries))]))
-    basis.multiply_places(residues, wanted, basis.of_integers(factors), places)
+    residues = BASIS.of_integers(row([7**20 + n for n in range(len(entries))]))
+    BASIS.multiply_places(residues, wanted, BASIS.of_integers(factors), places)
     expected = [(7**20 + n) * factors[at] if kept else 0 for n, (at, kept) in enumerate(entries)]
-    for p, found in zip(basis.primes, residues, strict=True):
+    for p, found in zip(BASIS.primes, residues, strict=True):
         assert [int(x) % p for x in found] == [x % p for x in expected]
 
 
-@pytest.mark.parametrize("divisor", [2, 4, 1008, 10**4])
-def test_a_divisor_of_all_primes_less_one(divisor):
-    basis = ResidueBasis(BITS, 2**23, divisor)
-    assert all(p % divisor == 1 for p in basis.primes)
-    assert prod(basis.primes) > 2 ** (BITS + 4)
-    assert len(set(basis.primes)) == len(basis)
-
-
 def test_too_few_primes_are_named():
-    with pytest.raises(TooFewPrimes, match="too few primes up to 50"):
+    with pytest.raises(TooFewPrimes, match="too few primes up to 50 "):
         ResidueBasis(BITS, 50)
-
-
-def test_which_primes_are_small():
-    assert SMALL.small
-    assert not BASIS.small
-
-
-@pytest.mark.parametrize("sign", [-1, 1])
-def test_rounding_in_place_sees_an_integer_beyond_the_promised_bits(sign):
-    residues = SMALL.of_integers(row([1, sign * 2 ** (BITS + 1)]))
-    with pytest.raises(OverflowError, match="range"):
-        SMALL.round_in_place(residues, np.ones(2, dtype=bool), LIMB_BITS)
-
-
-@given(st.lists(st.integers(-(2**900), 2**900), max_size=5))
-def test_residues_of_integers_of_any_size(integers):
-    """Longer ones than those of the basis go by Horner's rule."""
-    for p, residues in zip(SMALL.primes, SMALL.of_integers(row(integers)), strict=True):
-        assert [int(r) % p for r in residues] == [x % p for x in integers]
-        assert np.abs(residues).max(initial=0) <= p // 2
+    with pytest.raises(TooFewPrimes, match=r"too few primes up to 8388608 for 50000 bits"):
+        ResidueBasis(50_000 - 4, 2**23)

@@ -3,12 +3,13 @@
 Each run is kept with its machine, and compared with the one before (history.py).
 """
 
-import time
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
-from tests.benchmarks.history import BESIDE, FOLDER, WHAT, machine, read_runs, slower_lines
+from tests.benchmarks.history import BESIDE, FOLDER, WHAT, machine, read_runs, seconds, slower_lines
 
 MATRIX = 1500
 
@@ -28,12 +29,7 @@ def matrix_seconds():
     """Of a float64 matrix product on all threads, the best of five."""
     a = np.random.default_rng(1).random((MATRIX, MATRIX))
     a @ a
-    seconds = []
-    for _ in range(5):
-        start = time.perf_counter()
-        a @ a
-        seconds.append(time.perf_counter() - start)
-    return min(seconds)
+    return min(seconds(lambda: a @ a) for _ in range(5))
 
 
 @pytest.fixture(autouse=True)
@@ -66,6 +62,22 @@ def record(benchmark, request, beside):
         request.config.stash.setdefault(LINES, []).append(line + (f"  {note}" if note else ""))
 
     return keep
+
+
+PEAK = "\nimport resource\nprint(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+
+
+@pytest.fixture
+def in_a_process(benchmark):
+    """What lines of Python print in a process of its own, and its peak memory in GB."""
+
+    def run(code, rounds=1):
+        command, how = [sys.executable, "-c", code + PEAK], {"check": True, "capture_output": True, "text": True}
+        done = benchmark.pedantic(subprocess.run, (command,), how, rounds=rounds, iterations=1)
+        *printed, peak = done.stdout.splitlines()
+        return "\n".join(printed), int(peak) / 2**20
+
+    return run
 
 
 LINES = pytest.StashKey()

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+import time
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,13 @@ BESIDE = "matrix_product_seconds"
 WHAT = "what"
 
 Json = dict[str, Any]
+
+
+def seconds(work: Callable[[], Any]) -> float:
+    """Of one call, by the clock."""
+    start = time.perf_counter()
+    work()
+    return time.perf_counter() - start
 
 
 def machine() -> Json:

@@ -1,29 +1,18 @@
 """Series of many digits beside the same series in doubles and beside one product of FLINT; bundles. Measured, not asserted."""
 
-import subprocess
-import sys
-import time
-
 import flint
 import numpy as np
 import pytest
 
-from symfpu.bundles.bundle import load, save
+from symfpu import lindstedt, load, save, solve_amplitudes
 from symfpu.paper.printed import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
+from tests.benchmarks.history import seconds
 
 CASES = [
     pytest.param(TWO_TORUS, 30, 50, id="2-torus of Fig. 1 to order 30, 50 digits"),
     pytest.param(APPENDIX_F[0], 11, 50, id="4-torus N = 32 to order 11, 50 digits"),
     pytest.param(FIG9_BREATHER, 250, 100, id="breather N = 32 to order 250, 100 digits"),
 ]
-
-
-def seconds(work):
-    start = time.perf_counter()
-    work()
-    return time.perf_counter() - start
 
 
 def flint_product(series):
@@ -57,19 +46,17 @@ def test_series_of_many_digits(benchmark, record, request, torus, order, digits)
     record(f"{request.node.callspec.id} ({series.guard_digits} guard digits)", multiply_adds=series.multiply_adds, note=note)
 
 
-def test_memory_of_the_four_torus(benchmark, record):
-    code = (
-        "import resource\n"
-        "from symfpu.series.lindstedt import lindstedt\n"
-        "from symfpu.paper.printed import APPENDIX_F\n"
-        "t = APPENDIX_F[0]\n"
-        "lindstedt(t.chain, t.seeds, t.frequencies, 11, digits=50)\n"
-        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
-    )
-    run = benchmark.pedantic(
-        subprocess.run, ([sys.executable, "-c", code],), {"check": True, "capture_output": True, "text": True}, rounds=1, iterations=1
-    )
-    record("4-torus, 50 digits, in a process of its own", note=f"peak memory {int(run.stdout) / 2**20:.2f} GB")
+FOUR_TORUS = """
+from symfpu.series.lindstedt import lindstedt
+from symfpu.paper.printed import APPENDIX_F
+t = APPENDIX_F[0]
+lindstedt(t.chain, t.seeds, t.frequencies, 11, digits=50)
+"""
+
+
+def test_memory_of_the_four_torus(in_a_process, record):
+    _, peak = in_a_process(FOUR_TORUS)
+    record("4-torus, 50 digits, in a process of its own", note=f"peak memory {peak:.2f} GB")
 
 
 @pytest.mark.parametrize("digits", [None, 50])

@@ -1,17 +1,15 @@
 """Speed and memory of the exact layer, on two cores. Measured and printed, not asserted."""
 
 import random
-import subprocess
-import sys
 
+from symfpu import Chain, prove_propagation, sweep_propagation
 from symfpu.algebra.float64 import Float64Ring
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.residue import ResidueRing
 from symfpu.algebra.selection import CosineModes
-from symfpu.chain.chain import Chain
-from symfpu.proofs.certificates import prove_propagation, random_point
-from symfpu.proofs.sweeps import sweep_propagation
+from symfpu.proofs.certificates import random_point
 from symfpu.series.residues import residue_series
+from tests.benchmarks.history import seconds
 
 SEEDS = (94, 95, 96, 97, 98)
 
@@ -21,15 +19,10 @@ def test_proof(benchmark, record):
     record(f"N = 128, seeds 94..98, alpha, order 9: {proof.verdict}")
 
 
-def test_memory_of_a_proof(benchmark, record):
-    code = (
-        "import resource\nfrom symfpu.proofs.certificates import prove_propagation\n"
-        f"prove_propagation(128, {SEEDS}, 9)\nprint(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
-    )
-    run = benchmark.pedantic(
-        subprocess.run, ([sys.executable, "-c", code],), {"check": True, "capture_output": True, "text": True}, rounds=2, iterations=1
-    )
-    record("the same in a process of its own", note=f"peak memory {int(run.stdout) / 2**20:.2f} GB")
+def test_memory_of_a_proof(in_a_process, record):
+    code = f"from symfpu.proofs.certificates import prove_propagation\nprove_propagation(128, {SEEDS}, 9)"
+    _, peak = in_a_process(code, rounds=2)
+    record("the same in a process of its own", note=f"peak memory {peak:.2f} GB")
 
 
 def test_residue_kernel(benchmark, record):
@@ -47,12 +40,8 @@ def test_residue_kernel(benchmark, record):
         for degree in range(2, 11):
             ring.power(2, degree)
 
-    import time
-
     products(rings[1])
-    start = time.perf_counter()
-    products(rings[1])
-    doubles = time.perf_counter() - start
+    doubles = seconds(lambda: products(rings[1]))
     benchmark.pedantic(products, (rings[0],), rounds=3, iterations=1, warmup_rounds=1)
     ratio = doubles / benchmark.stats.stats.median
     record("residue kernel, N = 128, order 9", multiply_adds=rings[0].multiply_adds, note=f"{ratio:.0%} of the rate in doubles")

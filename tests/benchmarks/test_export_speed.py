@@ -4,17 +4,15 @@ import ctypes
 import importlib.util
 import shutil
 import subprocess
-import time
 
 import numpy as np
 import pytest
 
-from symfpu.codegen.evaluator import compile_evaluator
-from symfpu.codegen.export import export
-from symfpu.codegen.series_program import series_program
+from symfpu import compile_evaluator, export, lindstedt, solve_amplitudes
+from symfpu.codegen.languages.c import C
+from symfpu.codegen.series_program import series_facts, series_program
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
+from tests.benchmarks.history import seconds
 
 TIMES = 100_000
 DRIVER = """#include <stdlib.h>
@@ -55,13 +53,11 @@ def test_numpy(benchmark, record, torus, tmp_path, multiply_adds):
 
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no C compiler")
 def test_c(benchmark, record, torus, tmp_path, multiply_adds):
-    start = time.perf_counter()
-    path = export(torus, "c", tmp_path / "four_torus")
-    emitted = time.perf_counter() - start
+    path = tmp_path / "four_torus.c"
+    emitted = seconds(lambda: export(torus, "c", path))
     (tmp_path / "driver.c").write_text(DRIVER)
-    start = time.perf_counter()
-    subprocess.run(["gcc", "-std=c99", "-O2", str(path), "driver.c", "-o", "driver", "-lm"], check=True, cwd=tmp_path)
-    compiled = time.perf_counter() - start
+    command = ["gcc", "-std=c99", "-O2", str(path), "driver.c", "-o", "driver", "-lm"]
+    compiled = seconds(lambda: subprocess.run(command, check=True, cwd=tmp_path))
     benchmark.pedantic(subprocess.run, ([str(tmp_path / "driver")],), {"check": True}, rounds=3, iterations=1)
     note = f"emitted in {emitted:.1f} s, {path.stat().st_size / 1e6:.1f} MB, compiled in {compiled:.1f} s"
     record("4-torus, Q and P at 1e5 times, C at -O2, one core", multiply_adds=multiply_adds, note=note)
@@ -71,7 +67,7 @@ def test_c(benchmark, record, torus, tmp_path, multiply_adds):
 def test_evaluator(benchmark, record, torus, multiply_adds):
     evaluator = compile_evaluator(torus)
     times = np.arange(float(TIMES))
-    benchmark.pedantic(lambda: (evaluator.positions(times), evaluator.momenta(times)), rounds=1, iterations=1)
+    benchmark.pedantic(lambda: (evaluator.Q(times), evaluator.P(times)), rounds=1, iterations=1)
     record("4-torus, positions and momenta at 1e5 times, compile_evaluator", multiply_adds=multiply_adds)
 
 
@@ -86,15 +82,15 @@ def test_octave(benchmark, record, torus, tmp_path, multiply_adds):
 @pytest.mark.skipif(not shutil.which("gcc"), reason="no C compiler")
 @pytest.mark.parametrize("form", ["statements", "tables"])
 @pytest.mark.parametrize("order", [2, 3, 4, 6])
-def test_series_in_c(benchmark, record, order, form, tmp_path, monkeypatch):
+def test_series_in_c(benchmark, record, order, form, tmp_path):
     """Where straight-line code ends and tables begin: 2-torus of Fig. 1 with free amplitudes."""
-    monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", 10**9 if form == "statements" else 0)
     series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies, order)
-    path = export(series, "c", tmp_path / "free")
-    start = time.perf_counter()
+    most = 10**9 if form == "statements" else 0
+    path = tmp_path / "free.c"
+    program = series_program(series, "free", series_facts(series), straight_line=most)
+    path.write_text(C.series(program))
     command = ["gcc", "-std=c99", "-O2", "-shared", "-fPIC", str(path), "-o", str(tmp_path / "free.so"), "-lm"]
-    subprocess.run(command, check=True)
-    compiled = time.perf_counter() - start
+    compiled = seconds(lambda: subprocess.run(command, check=True))
     function = ctypes.CDLL(str(tmp_path / "free.so")).free_orbit
     t, A, Q, P = np.arange(float(TIMES)), np.array([0.3, 0.2]), np.empty((TIMES, 15)), np.empty((TIMES, 15))
 
@@ -102,11 +98,8 @@ def test_series_in_c(benchmark, record, order, form, tmp_path, monkeypatch):
         pointers = [ctypes.c_void_p(x.ctypes.data) for x in (t, A)]
         function(ctypes.c_size_t(count), *pointers, None, None, ctypes.c_void_p(Q.ctypes.data), ctypes.c_void_p(P.ctypes.data))
 
-    start = time.perf_counter()
-    for _ in range(1000):
-        call(1)
-    one = time.perf_counter() - start
+    one = seconds(lambda: [call(1) for _ in range(1000)])
     benchmark.pedantic(call, (TIMES,), rounds=5, iterations=1)
-    operations = series_program(series, "free", {}).straight
+    operations = program.straight
     size = "" if operations is None else f"{operations.operations} operations, "
     record(f"series of order {order}, 1e5 times, C, {form}", note=f"{size}compiled in {compiled:.2f} s, one time {one * 1e3:.1f} us")

@@ -7,11 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
-from symfpu.breathers.digits import periodic_orbit_digits
-from symfpu.breathers.floquet import floquet
-from symfpu.chain.chain import Chain
-from symfpu.families.following import family
+from symfpu import Chain, breather_at_amplitude, family, floquet, periodic_orbit, periodic_orbit_digits
 
 CHAIN, OMEGA = Chain(32, "0.33"), "0.0981410995944860"
 LENGTHS = (16, 32, 64, 128, 256)
@@ -36,18 +32,11 @@ def test_multipliers(benchmark, record):
 
 
 def test_family_of_fifty(benchmark, record):
-    found = benchmark.pedantic(
-        family,
-        (CHAIN, (1,), "1"),
-        {"from_energy": "1e-11", "members": 50, "multipliers": True},
-        rounds=1,
-        iterations=1,
-    )
+    options = {"from_energy": "1e-11", "members": 50, "multipliers": True}
+    found = benchmark.pedantic(family, (CHAIN, (1,), "1"), options, rounds=1, iterations=1)
     last = found.members[-1]
-    record(
-        f"family of {len(found.members)} breathers with multipliers",
-        note=f"to H = {last.energy:.3g}, {len(last.torus.harmonics)} harmonics",
-    )
+    note = f"to H = {last.energy:.3g}, {len(last.torus.harmonics)} harmonics"
+    record(f"family of {len(found.members)} breathers with multipliers", note=note)
 
 
 def test_growth_with_the_chain(benchmark, record):

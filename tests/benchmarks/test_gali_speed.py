@@ -9,8 +9,8 @@ import time
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.alignment import alignment_indices, random_frame
+from symfpu import Chain, alignment_indices
+from symfpu.dynamics.alignment import random_frame
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.dynamics.tangent import moving_frame
 from symfpu.dynamics.tangent_loops import advance

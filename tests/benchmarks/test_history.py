@@ -64,20 +64,6 @@ def test_this_machine_has_a_record_and_no_name():
     assert held.keys() == HERE.keys()
 
 
-def test_the_page_has_a_table_a_machine(tmp_path):
-    write(tmp_path, 1, {"series": (1.0, 0.1)}, HERE | {"cores": 64})
-    write(tmp_path, 2, {"series": (1.0, 0.1), "start": (0.2, None)})
-    write(tmp_path, 3, {"series": (1.2, 0.1), "start": (0.2, None)})
-    text = page["with_section"]("before\n<!-- runs: begin -->\nold\n<!-- runs: end -->\nafter\n", read_runs(tmp_path))
-    assert text.startswith("before\n")
-    assert text.endswith("\nafter\n")
-    assert "old" not in text
-    assert text.count("| what |") == 2
-    assert "P, 64 cores, vectors of 512 bits, 2.6 GHz, Python 3.11.7; 2026-11-01, commit 0123456." in text
-    assert "| the series | 1.8 | 12 | +20% |" in text
-    assert "| the start | 0.3 |  | +0% |" in text
-
-
 def test_the_page_is_made_from_the_runs_that_are_kept():
     text = (ROOT / "docs" / "performance.md").read_text()
     assert text == page["with_section"](text, read_runs(FOLDER))

@@ -1,8 +1,8 @@
 """Speed of the Lemma: closed form and comparison with the recursion for all modes of D_1 .. D_4. Measured and printed, not asserted."""
 
 import symfpu.proofs.leading
-from symfpu.chain.chain import Chain
-from symfpu.proofs.leading import leading_terms, lemma_holds
+from symfpu import Chain, lemma_holds
+from symfpu.proofs.leading import leading_terms
 
 CHAIN, SEEDS, ORDER = Chain(N=32, alpha=1), (1, 2, 3, 4), 4
 

@@ -11,13 +11,9 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.orbits import integrate
+from symfpu import Chain, integrate, lindstedt, random_state, solve_amplitudes
 from symfpu.dynamics.schemes import SCHEMES
-from symfpu.dynamics.starts import random_state
 from symfpu.paper.printed import APPENDIX_F
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
 
 STEPS = {
     "yoshida4": (0.02, 0.05, 0.1, 0.2),
@@ -33,7 +29,7 @@ def four_torus():
     """The 4-torus of Fig. 2, N = 32, as its initial conditions."""
     case = APPENDIX_F[0]
     torus = solve_amplitudes(lindstedt(case.chain, case.seeds, case.frequencies, 6))
-    return case.chain, torus.positions(0.0), torus.momenta(0.0)
+    return case.chain, torus.Q(0.0), torus.P(0.0)
 
 
 @pytest.mark.parametrize("name", SCHEMES)

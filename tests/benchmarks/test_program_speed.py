@@ -1,19 +1,15 @@
 """Universal series as programs: nodes, products, seconds and bytes; expansion beside FLINT's and SymEngine's."""
 
-import time
-
 import flint
 import numpy as np
 import pytest
 import symengine as se
 
+from symfpu import Chain, lindstedt, load, sample_series, save
 from symfpu.algebra.expansion import Expansion
 from symfpu.algebra.formulas import expression_of_leaf
 from symfpu.algebra.program_values import terms_of
-from symfpu.bundles.bundle import load, save
-from symfpu.chain.chain import Chain
-from symfpu.series.lindstedt import lindstedt
-from symfpu.series.sample import sample_series
+from tests.benchmarks.history import seconds
 
 CASES = [
     (Chain(16, alpha=1), (1, 2), 6),
@@ -72,12 +68,7 @@ def test_expansion_by_flint_and_symengine(benchmark, record, order):
         return made(se.Integer(1), [expression_of_leaf(s) for s in program.symbols], se.expand)
 
     Expansion(program, wanted)
-    start = time.perf_counter()
-    Expansion(program, wanted)
-    ours = time.perf_counter() - start
-    start = time.perf_counter()
-    by_symengine()
-    theirs = time.perf_counter() - start
+    ours, theirs = seconds(lambda: Expansion(program, wanted)), seconds(by_symengine)
     benchmark.pedantic(by_flint, rounds=1, iterations=1)
     flint_seconds = benchmark.stats.stats.median
     record(f"order {order} by FLINT", note=f"{flint_seconds / ours:.1f} times ours ({ours:.3f} s); SymEngine {theirs / ours:.1f} times")
@@ -89,21 +80,16 @@ def test_a_thousand_sets(benchmark, record):
     sampled = benchmark.pedantic(sample_series, (series, frequencies), rounds=3, iterations=1, warmup_rounds=1)
     terms = len(series.node_tables()[0].program.terms.left)
     left, right = np.random.default_rng(2).random((2, 1500, 1500))
-    start = time.perf_counter()
-    _ = left @ right
-    flops = 2 * 1500**3 / (time.perf_counter() - start)
+    flops = 2 * 1500**3 / seconds(lambda: left @ right)
     rate = 3 * terms * 1000 / benchmark.stats.stats.median
     record("1000 sets, order 8", note=f"{terms:,} products each, {rate / 1e9:.2f} GFlop/s, {rate / flops:.1%} of a matrix product")
-    start = time.perf_counter()
-    sampled.frequencies_at([0.3, 0.2])
-    record("with derivatives by frequencies and amplitudes", note=f"{time.perf_counter() - start:.2f} s more")
+    more = seconds(lambda: sampled.frequencies_at([0.3, 0.2]))
+    record("with derivatives by frequencies and amplitudes", note=f"{more:.2f} s more")
 
 
 def test_loading(benchmark, record, tmp_path):
-    start = time.perf_counter()
-    series = lindstedt(Chain(16, alpha=1), (1, 2), order=12)
-    building = time.perf_counter() - start
-    path = save(tmp_path / "series", series)
+    building = seconds(lambda: lindstedt(Chain(16, alpha=1), (1, 2), order=12))
+    path = save(tmp_path / "series", lindstedt(Chain(16, alpha=1), (1, 2), order=12))
     benchmark.pedantic(load, (path,), rounds=3, iterations=1, warmup_rounds=1)
     ratio = benchmark.stats.stats.median / building
     record("order 12 from its file", note=f"{path.stat().st_size / 1e6:.1f} MB, {ratio:.2f} of the time to build it")

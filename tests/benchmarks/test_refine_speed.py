@@ -4,18 +4,13 @@ Allowed: 5 s for the 2-torus of Fig. 1 with its series, 300 s and 4 GB for the 4
 """
 
 import json
-import subprocess
-import sys
-import time
 
 import numpy as np
 
-from symfpu.breathers.balance import periodic_orbit
+from symfpu import lindstedt, periodic_orbit, refine, solve_amplitudes
 from symfpu.paper.printed import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
 from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.tori import refine
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
+from tests.benchmarks.history import seconds
 
 
 def guess_of(torus, order):
@@ -27,12 +22,8 @@ def transform_pair(refined):
     equation = InvarianceEquation(refined.chain, refined.seeds, refined.harmonics)
     bonds = (refined.chain.N + 1) // 2
     columns = np.random.default_rng(1).normal(size=(len(refined.harmonics), bonds))
-    seconds = []
-    for _ in range(3):
-        start = time.perf_counter()
-        equation.grid.coefficients(equation.grid.values(columns))
-        seconds.append(time.perf_counter() - start)
-    return min(seconds), f"{bonds} bonds x {equation.grid.points} points"
+    least = min(seconds(lambda: equation.grid.coefficients(equation.grid.values(columns))) for _ in range(3))
+    return least, f"{bonds} bonds x {equation.grid.points} points"
 
 
 def summary(refined):
@@ -46,8 +37,8 @@ def summary(refined):
     }
 
 
-def note_of(made, seconds):
-    return f"{made['text']}; = {seconds / made['pair']:.0f} transforms there and back ({made['pair']:.4f} s, {made['lattice']})"
+def note_of(made, taken):
+    return f"{made['text']}; = {taken / made['pair']:.0f} transforms there and back ({made['pair']:.4f} s, {made['lattice']})"
 
 
 def test_two_torus(benchmark, record):
@@ -57,25 +48,25 @@ def test_two_torus(benchmark, record):
     record("2-torus of Fig. 1, series of order 12 and refinement", note=note_of(summary(refined), benchmark.stats.stats.median))
 
 
-def test_four_torus(benchmark, record):
+FOUR_TORUS = """
+import json
+import time
+from symfpu.paper.printed import APPENDIX_F
+from tests.benchmarks.test_refine_speed import guess_of, refine, summary
+guess = guess_of(APPENDIX_F[0], 6)
+start = time.perf_counter()
+refined = refine(guess)
+seconds = time.perf_counter() - start
+print(json.dumps(summary(refined) | {"seconds": seconds, "warnings": refined.warnings}))
+"""
+
+
+def test_four_torus(in_a_process, record):
     """In a process of its own, whose peak memory counts; allowed 300 s and 4 GB."""
-    code = (
-        "import json, resource, time\n"
-        "from symfpu.paper.printed import APPENDIX_F\n"
-        "from tests.benchmarks.test_refine_speed import guess_of, refine, summary\n"
-        "guess = guess_of(APPENDIX_F[0], 6)\n"
-        "start = time.perf_counter()\n"
-        "refined = refine(guess)\n"
-        "seconds = time.perf_counter() - start\n"
-        "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
-        "print(json.dumps(summary(refined) | {'seconds': seconds, 'peak': peak, 'warnings': refined.warnings}))"
-    )
-    run = benchmark.pedantic(
-        subprocess.run, ([sys.executable, "-c", code],), {"check": True, "capture_output": True, "text": True}, rounds=1, iterations=1
-    )
-    made = json.loads(run.stdout)
+    printed, peak = in_a_process(FOUR_TORUS)
+    made = json.loads(printed)
     doubts = "".join(f"; {warning}" for warning in made["warnings"])
-    note = f"refinement alone {made['seconds']:.1f} s, peak memory {made['peak'] / 2**20:.2f} GB; {note_of(made, made['seconds'])}{doubts}"
+    note = f"refinement alone {made['seconds']:.1f} s, peak memory {peak:.2f} GB; {note_of(made, made['seconds'])}{doubts}"
     record(f"4-torus of {APPENDIX_F[0].label}, series of order 6 and refinement", note=note)
 
 
@@ -84,9 +75,7 @@ def test_breather(benchmark, record):
     torus = APPENDIX_F[5]
     guess = guess_of(torus, 20)
     refined = benchmark.pedantic(refine, (guess,), rounds=3, iterations=1, warmup_rounds=1)
-    start = time.perf_counter()
-    periodic_orbit(torus.chain, torus.seeds[0], torus.frequencies[0])
-    alone = time.perf_counter() - start
+    alone = seconds(lambda: periodic_orbit(torus.chain, torus.seeds[0], torus.frequencies[0]))
     note = f"{note_of(summary(refined), benchmark.stats.stats.median)}; periodic_orbit {alone:.3f} s"
     record(f"breather N = 32 of {torus.label}, from order 20", note=note)
 

@@ -5,12 +5,11 @@ import sys
 
 import pytest
 
+from symfpu import Chain, lindstedt
 from symfpu.algebra.float64 import Float64Ring
-from symfpu.algebra.grading import Grading
+from symfpu.algebra.grading import Grading, monomial_count
 from symfpu.algebra.selection import CosineModes
-from symfpu.chain.chain import Chain
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
-from symfpu.series.lindstedt import lindstedt
 
 TORI = (TWO_TORUS, *(torus for torus in APPENDIX_F if len(torus.seeds) > 1))
 
@@ -21,8 +20,6 @@ def series_of(torus):
 
 def plain_count(series):
     """Multiply-adds of the same products over all bonds without symmetries: every ordered pair of monomials, N bonds."""
-    from symfpu.algebra.grading import monomial_count
-
     sizes = [monomial_count(len(series.seeds), d) for d in range(series.degree(series.order) + 1)]
     return series.chain.N * sum(sizes[d] * sizes[e] for d in range(1, len(sizes)) for e in range(1, len(sizes) - d))
 
@@ -104,15 +101,14 @@ def test_first_compilation(benchmark, record, tmp_path):
     record("first compilation of all kernels (whole process)")
 
 
-def test_memory(benchmark, record):
-    code = (
-        "import resource\n"
-        "from symfpu.series.lindstedt import lindstedt\n"
-        "from symfpu.paper.printed import APPENDIX_F, TWO_TORUS\n"
-        "for t in (TWO_TORUS, *APPENDIX_F[:5]): lindstedt(t.chain, t.seeds, t.frequencies, t.order)\n"
-        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
-    )
-    run = benchmark.pedantic(
-        subprocess.run, ([sys.executable, "-c", code],), {"check": True, "capture_output": True, "text": True}, rounds=3, iterations=1
-    )
-    record("six tori in a process of their own", note=f"peak memory {int(run.stdout) / 2**20:.2f} GB")
+SIX_TORI = """
+from symfpu.series.lindstedt import lindstedt
+from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
+for t in (TWO_TORUS, *APPENDIX_F[:5]):
+    lindstedt(t.chain, t.seeds, t.frequencies, t.order)
+"""
+
+
+def test_memory(in_a_process, record):
+    _, peak = in_a_process(SIX_TORI, rounds=3)
+    record("six tori in a process of their own", note=f"peak memory {peak:.2f} GB")

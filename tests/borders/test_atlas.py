@@ -8,7 +8,20 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from symfpu import Atlas, Chain, assess, atlas, breather_at_energy, floquet, read_atlas, sweep, torus_at_energy
+from symfpu import (
+    Atlas,
+    Chain,
+    InputError,
+    SweepRows,
+    assess,
+    atlas,
+    breather_at_energy,
+    floquet,
+    frequency_rank,
+    read_atlas,
+    sweep,
+    torus_at_energy,
+)
 from symfpu.borders import newton_end
 from symfpu.borders.column import atlas_column
 from symfpu.borders.last_torus import SHARPER, vanishing_divisor
@@ -16,16 +29,14 @@ from symfpu.borders.laws import power_law
 from symfpu.borders.newton_end import LOSS_WIDTH, NOT_FOLLOWED, TOLERANCE, TOO_MANY, WIDE_FACTOR
 from symfpu.borders.packets import packet_modes
 from symfpu.borders.search import WIDTH
-from symfpu.chain.commensurability import frequency_rank
-from symfpu.errors import InputError
 from symfpu.refinement.resonances import NearResonance
-from symfpu.sweeps.rows import SweepRow, SweepRows
+from symfpu.sweeps.rows import SweepRow
 from symfpu.sweeps.this_process import ThisProcess
 from tests.tolerances import LOCATED, ROUNDING, SIX_DIGITS
 
 HERE = ThisProcess()
 BETA = Chain(8, beta=1)
-HIGH = {"packets": ["high:1"], "order": 4, "borders": ["poles"], "executor": HERE}
+COLUMN = {"packets": ["low:1"], "by": "amplitude", "order": 3, "borders": ["ratio"], "reach": 1, "executor": HERE}
 
 
 @pytest.mark.parametrize(
@@ -83,6 +94,7 @@ def border_of(chain, packet="high:1", order=4, border="poles", **how):
     return atlas_column(chain, packet, order, (border,), **how)["borders"][border]
 
 
+@pytest.mark.long
 def test_a_border_is_where_the_radius_is_one():
     """By the tori on both sides of it, each computed from rest."""
     found = border_of(BETA)
@@ -95,7 +107,8 @@ def test_a_border_is_where_the_radius_is_one():
     assert tori[0].energy() == pytest.approx(below, rel=SIX_DIGITS)
 
 
-@pytest.mark.parametrize(("name", "power"), [("beta", 1), pytest.param("alpha", 2, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "power"), [("beta", 1), ("alpha", 2)])
 def test_borders_scale_as_energies_do(name, power):
     """Units of length make alpha^2 H and beta H the only numbers."""
     packet, order = {"beta": ("high:1", 4), "alpha": ("low:1", 6)}[name]
@@ -104,6 +117,7 @@ def test_borders_scale_as_energies_do(name, power):
     assert (weak["mode"], weak["harmonic"]) == (strong["mode"], strong["harmonic"])
 
 
+@pytest.mark.long
 def test_by_amplitude_the_border_of_one_seed_is_the_same():
     found = border_of(BETA), border_of(BETA, by="amplitude")
     assert found[1]["energy"] == pytest.approx(found[0]["energy"], rel=LOCATED)
@@ -160,19 +174,20 @@ def test_a_divisor_vanishes_where_the_line_through_two_tori_does():
 
 
 def test_a_torus_with_a_residual_above_the_tolerance_is_not_followed(monkeypatch):
-    refined = newton_end._refined
+    refined = newton_end._Tori.refined
 
     def doubtful(*arguments):
         torus = refined(*arguments)
         return replace(torus, warnings=("full",)) if float(torus.energy()) > 0.015 else torus
 
-    monkeypatch.setattr(newton_end, "_refined", doubtful)
+    monkeypatch.setattr(newton_end._Tori, "refined", doubtful)
     column = atlas_column(BETA, "1", 4, ("newton",), places=["0.01"], reach=100)
     found = column["borders"]["newton"]
     assert found["failure"] == newton_end.NOT_SMALL
     assert found["energy"] < 0.015
 
 
+@pytest.mark.long
 def test_newton_begins_below_the_nearest_pole_where_no_point_is_asked_for():
     """And not at the smallest energy at which a ray is begun."""
     column = atlas_column(BETA, "high:1", 4, ("newton",), reach=1)
@@ -208,21 +223,21 @@ def test_impossible_chains_and_packets_are_rows():
 
 def test_a_file_is_gone_on_with(tmp_path):
     file, done = tmp_path / "atlas.jsonl", []
-    atlas([Chain(4, beta=1), Chain(6, beta=1)], **HIGH, file=file)
+    atlas([Chain(4, beta=1), Chain(6, beta=1)], **COLUMN, file=file)
     before = file.read_text()
-    found = atlas([Chain(N, beta=1) for N in (4, 6, 8)], **HIGH, file=file, progress=lambda _, part: done.append(part))
+    found = atlas([Chain(N, beta=1) for N in (4, 6, 8)], **COLUMN, file=file, progress=lambda _, part: done.append(part))
     after = file.read_text()
     assert after.startswith(before)
     assert (len(after.splitlines()), done) == (4, [1.0])
     assert read_atlas(file) == found
-    law = found.law("high:1", "poles")
+    law = found.law("low:1", "ratio")
     assert law.lengths == (4, 6, 8)
     assert law.energies == tuple(b.energy for b in found.borders)
-    assert found.laws == {("beta=1", "high:1", "poles"): law}
+    assert found.laws == {("beta=1", "low:1", "ratio"): law}
     frame = found.to_frame()
     assert list(frame.energy_per_particle) == [b.energy / b.N for b in found.borders]
     with pytest.raises(InputError, match="fixed"):
-        atlas([BETA], **HIGH, reach=2, file=file)
+        atlas([BETA], **COLUMN | {"reach": 2}, file=file)
 
 
 def test_the_file_of_another_sweep_is_refused(tmp_path):
@@ -289,5 +304,5 @@ WRONG_ARGUMENTS = {
 @pytest.mark.parametrize("name", WRONG_ARGUMENTS)
 def test_wrong_arguments_are_refused(name):
     with pytest.raises(InputError) as caught:
-        atlas([BETA], **HIGH | WRONG_ARGUMENTS[name])
+        atlas([BETA], **COLUMN | WRONG_ARGUMENTS[name])
     assert caught.value.argument == name.partition(",")[0]

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from symfpu import Atlas, Chain, alignment_indices, atlas, breather_at_energy, packet_state, read_atlas
+from symfpu import Atlas, Chain, InputError, SweepRows, alignment_indices, atlas, breather_at_energy, packet_state, read_atlas
 from symfpu.borders import chaos
 from symfpu.borders.chaos import COARSE, DRAWS, EARLIER, FACTOR, QUIET, ChaosRay, chaos_borders
 from symfpu.borders.column import atlas_column
-from symfpu.errors import InputError
-from symfpu.sweeps.rows import SweepFailure, SweepRow, SweepRows
+from symfpu.numbers.lanes import LANES
+from symfpu.sweeps.rows import SweepFailure, SweepRow
 from symfpu.sweeps.this_process import ThisProcess
 from tests.tolerances import SIX_DIGITS
 
@@ -87,6 +87,7 @@ def test_phases_are_drawn_once_for_all_energies_and_are_not_those_of_another_dra
     assert len(set(one.values())) == 3
 
 
+@pytest.mark.long
 def test_above_a_border_an_orbit_is_chaotic_and_below_it_is_not_seen():
     """By alignment indices, with vectors, scheme and step of their own."""
     column = atlas_column(BETA, "low:2", 1, BOTH, time=1e4, draws=1)
@@ -100,17 +101,19 @@ def test_above_a_border_an_orbit_is_chaotic_and_below_it_is_not_seen():
     assert column["points"] == column["newton"] == []
 
 
+@pytest.mark.long
 def test_a_breather_stays_where_the_packet_of_its_seed_is_chaotic():
     """No orbit of alpha leaves its well below H = 1/6; twice the border of the packet by 1e5."""
     chain, H = Chain(16, alpha=1), "0.16"
     breather = breather_at_energy(chain, 1, H, harmonic=False)
-    on_it = [(breather.positions(t), breather.momenta(t)) for t in (0.0, 5.0)]
+    on_it = [(breather.Q(t), breather.P(t)) for t in (0.0, 5.0)]
     packets = [packet_state(chain, (1,), H, phases={1: phase}) for phase in (0.0, 1.0, 2.0)]
     seen = chaos.chaos_times(chain, [*on_it, *packets], 1e5)
     assert np.isinf(seen[:2]).all()
     assert np.isfinite(seen[2:]).all()
 
 
+@pytest.mark.long
 def test_toda_has_no_border_where_alpha_has_one():
     toda, alpha = (atlas_column(chain, "low:2", 1, ("chaos",), time=1e3, draws=2)["borders"] for chain in (TODA, ALPHA))
     assert toda["chaos"]["none"] == "no chaos seen up to H = 8"
@@ -172,13 +175,11 @@ def test_other_borders_and_failures_are_as_they_were_by_an_earlier_time():
 
 def test_without_chaos_the_head_of_a_file_has_no_time(tmp_path):
     file = tmp_path / "atlas.jsonl"
-    atlas([Chain(4, beta=1)], ["low:1"], 2, borders=["ratio"], executor=HERE, file=file)
+    atlas([Chain(4, beta=1)], ["low:1"], 2, borders=[], places=["0.01"], executor=HERE, file=file)
     assert not {"time", "draws"} & set(read_atlas(file).rows.fixed)
 
 
 def test_seven_draws_and_phases_0_fill_the_lanes():
-    from symfpu.numbers.lanes import LANES
-
     assert DRAWS + 1 == LANES
 
 

@@ -1,12 +1,12 @@
 """Where a torus passes the singularity of its series: by a determinant, and by the series themselves."""
 
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 import pytest
 
-from symfpu import Chain, lindstedt, refine_at_energy, torus_at_energy
-from symfpu.borders.fold import sheet_of
+from symfpu import Chain, breather_at_energy, lindstedt, refine_at_energy, torus_at_energy
+from symfpu.borders.fold import _determinant, sheet_of
 from symfpu.borders.newton_end import NewtonEnd, RefinedPoint
 from symfpu.borders.point import _radius
 from tests.tolerances import FOLD_RADIUS, SHEET_DETERMINANT
@@ -17,15 +17,22 @@ ORDER = 64
 GRID = 256  # angles
 
 
-@lru_cache
-def followed(energy: float):
-    """The breather of seed 1 with this energy, by small steps from the linear chain."""
-    H = 1e-4
-    torus = refine_at_energy(torus_at_energy(CHAIN, (1,), str(H), order=8), str(H), harmonic=False)
-    while energy > H:
-        H = min(1.2 * H, energy)
-        torus = refine_at_energy(torus, f"{H:.10g}", harmonic=False, tolerance=1e-10)
-    return torus
+LEAST, STEP = 1e-4, 1.2
+
+
+@cache
+def walked(steps):
+    """The breather of seed 1 by so many steps from the linear chain."""
+    if steps == 0:
+        return refine_at_energy(torus_at_energy(CHAIN, (1,), str(LEAST), order=8), str(LEAST), harmonic=False)
+    return refine_at_energy(walked(steps - 1), f"{LEAST * STEP**steps:.10g}", harmonic=False, tolerance=1e-10)
+
+
+@cache
+def followed(energy):
+    """The breather with this energy."""
+    before = walked(int(np.log(energy / LEAST) / np.log(STEP)))
+    return refine_at_energy(before, f"{energy:.10g}", harmonic=False, tolerance=1e-10)
 
 
 def radius(torus) -> float:
@@ -39,13 +46,6 @@ def radius(torus) -> float:
     return _radius(sizes, ORDER, 2)
 
 
-@pytest.mark.parametrize(("part", "sign"), [(0.5, 1), (0.95, 1), (1.05, -1), (2.0, -1)])
-def test_the_sign_changes_at_the_fold(part, sign):
-    sheet = sheet_of(followed(part * FOLD))
-    assert sheet.sign == sign
-    assert (sheet.mode, sheet.harmonic) == (2, (2,))
-
-
 @pytest.mark.long
 def test_the_radius_touches_one_at_the_fold():
     at_fold = radius(followed(FOLD))
@@ -55,8 +55,9 @@ def test_the_radius_touches_one_at_the_fold():
     assert above > 1 + 10 * FOLD_RADIUS
 
 
-def range_determinant(torus):
-    """Sign of the determinant by differences of the forces on a grid, all in real Fourier space."""
+def range_matrix(torus):
+    """The derivative, over the divisors, by differences of the forces on a grid, and its unknowns, all in real Fourier space."""
+    (seed,) = torus.seeds
     chain, count = torus.chain, torus.harmonics.shape[0]
     nu = torus.harmonics[:, 0]
     theta = 2 * np.pi * np.arange(GRID) / GRID
@@ -70,8 +71,9 @@ def range_determinant(torus):
         Q = cosines @ coefficients
         return back @ (chain.accelerations(Q) + linear**2 * Q)
 
-    unknown = [(k, q) for k in range(count) for q in range(chain.N - 1) if (nu[k] + q + 1) % 2 == 0]
-    unknown.remove((int(np.flatnonzero(nu == 1)[0]), 0))
+    every = 1 if chain.alpha else 2  # where V is even, harmonics are odd
+    unknown = [(k, q) for k in range(count) for q in range(chain.N - 1) if (q + 1 - nu[k] * seed) % 2 == 0 and (every == 1 or nu[k] % 2)]
+    unknown.remove((int(np.flatnonzero(nu == 1)[0]), seed - 1))
     step = 1e-6
     matrix = np.zeros((len(unknown), len(unknown)))
     for j, (k, q) in enumerate(unknown):
@@ -82,17 +84,39 @@ def range_determinant(torus):
             matrix[i, j] = change[row, mode]
     divisors = np.array([(nu[k] * omega) ** 2 - linear[q] ** 2 for k, q in unknown])
     # accelerations plus the linear part are minus the nonlinear force
-    sign, logarithm = np.linalg.slogdet((np.diag(-divisors) - matrix) / -divisors[:, None])
-    return sign, logarithm
+    return (np.diag(-divisors) - matrix) / -divisors[:, None], unknown
 
 
-@pytest.mark.parametrize("part", [0.5, 0.95, 1.05, 2.0])
-def test_the_determinant_by_differences(part):
+@pytest.mark.parametrize(("part", "sign"), [(0.5, 1), (0.95, 1), (1.05, -1), (2.0, -1)])
+def test_the_sign_changes_at_the_fold(part, sign):
+    """The determinant by differences has the same sign, and the same size."""
     torus = followed(part * FOLD)
     sheet = sheet_of(torus)
-    sign, logarithm = range_determinant(torus)
-    assert sheet.sign == sign
+    assert (sheet.mode, sheet.harmonic) == (2, (2,))
+    by_differences, logarithm = np.linalg.slogdet(range_matrix(torus)[0])
+    assert sheet.sign == by_differences == sign
     assert abs(sheet.logarithm - logarithm) < SHEET_DETERMINANT
+
+
+@pytest.mark.parametrize(("chain", "seed", "energy"), [(Chain(8, beta=1), 1, "0.05"), (Chain(8, beta=1), 3, "0.5")], ids=repr)
+def test_the_coefficient_of_the_weakest_direction_is_that_of_the_eigenvector(chain, seed, energy):
+    """By all eigenvectors of the derivative by differences; too few steps of inverse iteration named harmonic 7."""
+    torus = refine_at_energy(breather_at_energy(chain, seed, energy), energy, harmonic=False, tolerance=1e-8)
+    matrix, unknown = range_matrix(torus)
+    values, vectors = np.linalg.eig(matrix)
+    sizes = np.abs(vectors[:, np.argmin(np.abs(values))])
+    row, column = unknown[np.argmax(sizes)]
+    sheet = sheet_of(torus)
+    assert (sheet.mode, sheet.harmonic) == (column + 1, tuple(torus.harmonics[row].tolist()))
+
+
+def test_a_coefficient_that_is_not_sure_is_not_named(monkeypatch):
+    """Two that are equally large, and a direction that does not settle."""
+    turned = np.array([[1.0, 1.0], [-1.0, 1.0]]) / np.sqrt(2)
+    for eigenvalues, expected in (((0.01, 1.0), None), ((1.0, -1.0), None)):
+        matrix = turned @ np.diag(eigenvalues) @ turned.T
+        assert _determinant(matrix)[2] is expected
+    assert _determinant(np.diag([0.5, 0.01]))[2] == 1
 
 
 def test_too_many_coefficients_are_said(monkeypatch):

@@ -7,17 +7,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.breathers import digits as digits_module
-from symfpu.breathers.balance import NoPeriodicOrbit, breather_at_amplitude, periodic_orbit
-from symfpu.breathers.digits import Sweeps, periodic_orbit_digits
-from symfpu.breathers.fixed_force import FixedForce
-from symfpu.chain.chain import Chain
+from symfpu import Chain, InputError, NoPeriodicOrbit, breather_at_amplitude, periodic_orbit, periodic_orbit_digits, toda_torus
 from symfpu.chain.tension_terms import terms
-from symfpu.errors import InputError
-from symfpu.integrable.torus import toda_torus
 from symfpu.numbers.arithmetic import MULTIPRECISION
 from tests.oracles.oscillators import duffing
-from tests.tolerances import BOUND_OF_FORTY, HUNDRED_ROUNDINGS, LAST_DIGIT, ORBIT_IN_DOUBLES, SPOILT_LEAST, SPOILT_MOST
+from tests.refusals import each, refused
+from tests.tolerances import BOUND_OF_FORTY, ORBIT_IN_DOUBLES
 
 ALPHA = Chain(N=32, alpha="0.33")
 
@@ -40,27 +35,20 @@ def test_the_digits_continue_those_of_doubles(chain, seed, frequency, digits):
     precise = periodic_orbit_digits(orbit, digits)
     assert precise.frequency == Fraction(frequency)
     assert precise.digits == digits
-    rounded = precise.cosines[: len(orbit.cosines)].astype(float)
+    rounded = precise.by_harmonic()[: len(orbit.cosines)].astype(float)
     assert rounded == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES * np.max(np.abs(orbit.cosines)))
     assert precise.bound < mpmath.mpf(10) ** -digits
     assert 0 < precise.residual(3) < mpmath.mpf(10) ** (-digits - 5)  # at angles where nothing was collocated
     assert np.max(np.abs(precise.cosines[-1])) < mpmath.mpf(10) ** (-digits - 5)
 
 
-def test_the_bound_is_above_the_residual_and_sees_a_wrong_digit():
+def test_the_bound_is_above_the_residual():
+    """One that sees a wrong digit: tests/refinement/test_digits.py."""
     orbit = breather_at_amplitude(Chain(6, alpha="0.4", beta="0.2"), 5, "0.6")
     precise = periodic_orbit_digits(orbit, 30)
     t = np.linspace(0, 2 * np.pi / float(orbit.frequency), 1001)
-    largest = np.max(np.abs(orbit.chain.accelerations(orbit.positions(t))))
+    largest = np.max(np.abs(orbit.chain.accelerations(orbit.Q(t))))
     assert replace(precise, digits=80).residuals(7).max() < precise.bound * largest < BOUND_OF_FORTY
-    with mpmath.workdps(60):
-        sweeps = Sweeps(orbit, 60, None)
-    sweeps.converge()
-    sweeps.c[3, 4] += sweeps.size >> 100  # a digit in the 30th place
-    with mpmath.workdps(60):
-        spoilt = sweeps.result(30, 1)
-    assert SPOILT_LEAST < spoilt.bound < SPOILT_MOST
-    assert SPOILT_LEAST < spoilt.residuals(7).max() < spoilt.bound * largest
 
 
 def test_duffing_to_many_digits():
@@ -94,7 +82,7 @@ def test_closed_laws_to_many_digits(text, amplitude):
     """The residual goes by the closed law, the orbit by its first Taylor coefficients."""
     orbit = breather_at_amplitude(Chain(6, potential=text), 2, amplitude)
     precise = periodic_orbit_digits(orbit, 40, amplitude=amplitude)
-    rounded = precise.cosines[: len(orbit.cosines)].astype(float)
+    rounded = precise.by_harmonic()[: len(orbit.cosines)].astype(float)
     assert rounded == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES * np.max(np.abs(orbit.cosines)))
     assert precise.bound < mpmath.mpf(10) ** -40
     assert 0 < precise.residual(3) < mpmath.mpf(10) ** -45
@@ -127,69 +115,45 @@ def test_stretches_near_the_singularity_are_refused():
         periodic_orbit_digits(orbit, 1000)
 
 
-def test_frequency_and_amplitude_lead_to_the_same_member():
-    orbit = breather_at_amplitude(Chain(8, alpha="0.4"), 3, "0.5")
-    first = periodic_orbit_digits(orbit, 50, amplitude="0.5")
-    again = periodic_orbit_digits(orbit, 40, frequency=first.frequency)
-    with mpmath.workdps(60):
-        assert abs(again.amplitude - mpmath.mpf("0.5")) < mpmath.mpf("1e-38")
-        assert first.energy() == pytest.approx(again.energy(), rel=LAST_DIGIT)
+@each(orbit=[np.zeros((3, 3))], digits=[0, 1001, 2.5], frequency=["x"], amplitude=[0])
+def test_bad_input_is_refused(name, value):
+    refused(periodic_orbit_digits, name, value, orbit=breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), digits=20)
 
 
-def test_a_small_block_of_the_matrix_reaches_the_same_digits(monkeypatch):
-    """High harmonics by their diagonal alone: more sweeps, the same orbit."""
-    orbit = breather_at_amplitude(Chain(8, alpha="0.4", beta="0.1"), 3, "0.8")
-    whole = periodic_orbit_digits(orbit, 60)
-    monkeypatch.setattr(digits_module, "LARGEST_BLOCK", 10)
-    part = periodic_orbit_digits(orbit, 60)
-    assert part.sweeps > whole.sweeps
-    with mpmath.workdps(80):
-        assert np.max(np.abs(part.cosines - whole.cosines)) < mpmath.mpf("1e-65")
-
-
-def test_the_fixed_force_is_that_of_the_chain():
-    chain, bits = Chain(5, alpha="0.3", beta="-0.2"), 120
-    random = np.random.default_rng(5).normal(size=(4, 4))
-    with mpmath.workdps(40):
-        force = FixedForce(chain, bits)
-        c = np.array([[force.fixed(mpmath.mpf(x)) for x in row] for row in random], dtype=object)
-        values = force.equations(c, force.fixed(mpmath.mpf("0.7")), 9).astype(float) / 2.0**bits
-    t = np.linspace(0.1, 3, 7)
-    Q = np.cos(np.outer(t, np.arange(4))) @ random
-    second = np.cos(np.outer(t, np.arange(4))) @ (0.7 * np.arange(4)[:, None] ** 2 * random)
-    assert np.cos(np.outer(t, np.arange(10))) @ values == pytest.approx(second + chain.accelerations(Q), abs=HUNDRED_ROUNDINGS)
-
-
-def test_repr_is_an_answer():
-    text = repr(periodic_orbit_digits(periodic_orbit(ALPHA, 25, "1.8830741847088537"), 20))
-    assert text.startswith("PreciseOrbit(N=32, alpha=0.33, seed 25, omega=1.88307418470885.., A=0.051212159174019.., 20 digits, ")
-    assert "residual below " in text
-
-
-@pytest.mark.parametrize(
-    ("digits", "options", "name"),
-    [
-        (0, {}, "digits"),
-        (1001, {}, "digits"),
-        (2.5, {}, "digits"),
-        (20, {"frequency": 1, "amplitude": 1}, "frequency, amplitude"),
-        (20, {"frequency": "x"}, "frequency"),
-        (20, {"amplitude": 0}, "amplitude"),
-    ],
-)
-def test_bad_input_is_refused(digits, options, name):
+def test_frequency_and_amplitude_are_too_much():
     orbit = breather_at_amplitude(Chain(4, beta=1), 2, "0.1")
-    with pytest.raises(InputError, match=rf"^{name} = "):
-        periodic_orbit_digits(orbit, digits, **options)
-    with pytest.raises(InputError, match=r"^orbit = "):
-        periodic_orbit_digits(orbit.cosines, 20)
+    with pytest.raises(InputError, match=r"^frequency, amplitude = "):
+        periodic_orbit_digits(orbit, 20, frequency=1, amplitude=1)
 
 
-def test_sweeps_that_gain_nothing_are_given_up(monkeypatch):
+def test_steps_that_gain_nothing_are_given_up(monkeypatch):
     orbit = breather_at_amplitude(Chain(6, alpha="0.4"), 2, "0.5")
-    monkeypatch.setattr("scipy.linalg.lu_solve", lambda matrix, values: 0 * values)
-    with pytest.raises(NoPeriodicOrbit, match="the sweeps in fixed point stop at a residual of 1e-1"):
+    monkeypatch.setattr("scipy.linalg.lu_solve", lambda matrix, values, **how: 0 * values)
+    with pytest.raises(NoPeriodicOrbit, match="iterative refinement stops at a residual or update of 1e-1"):
         periodic_orbit_digits(orbit, 30)
+
+
+def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
+    """From the step it ended at, and on to more digits; also from an orbit of fewer."""
+    orbit, file, heard = breather_at_amplitude(Chain(6, alpha="0.4"), 2, "0.5"), tmp_path / "run", []
+
+    def until_third(label, fraction):
+        if label.startswith("step 3"):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        periodic_orbit_digits(orbit, 30, file=file, progress=until_third)
+    again = periodic_orbit_digits(orbit, 30, file=file, progress=lambda label, fraction: heard.append(label))
+    assert any(label.startswith("step 3: residual 1e-2") for label in heard)
+    more = periodic_orbit_digits(orbit, 50, file=file)
+    fewer_first = periodic_orbit_digits(again, 50)
+    assert more.sweeps > again.sweeps
+    with mpmath.workdps(80):
+        for found in (more, fewer_first):
+            assert np.max(np.abs(found.cosines[: len(again.cosines)] - again.cosines)) < mpmath.mpf(10) ** -30
+        assert np.max(np.abs(more.cosines - fewer_first.cosines)) < mpmath.mpf(10) ** -50
+    with pytest.raises(InputError, match=r"^file = .*frequencies is"):
+        periodic_orbit_digits(orbit, 30, amplitude="0.5", file=file)
 
 
 @pytest.mark.parametrize("amplitude", ["0.3", 1])

@@ -15,13 +15,10 @@ import numpy as np
 import pytest
 import symengine as se
 
-from symfpu.bundles.bundle import BundleError, load, save
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.orbits import integrate
+from symfpu import BundleError, Chain, integrate, lindstedt, prove_propagation
+from symfpu import save as save_any
+from symfpu.bundles.bundle import load, save
 from symfpu.files.archive import Archive
-from symfpu.proofs.certificates import prove_propagation
-from symfpu.saved.results import save as save_any
-from symfpu.series.lindstedt import lindstedt
 from tests.bundles.test_bundle import ALPHA, digest, healthy, opened, same  # noqa: F401 (a fixture)
 
 
@@ -128,7 +125,11 @@ def forged(path, change):
         if f"{name}.npy" in members:
             body["arrays"][name] = hashlib.sha256(members[f"{name}.npy"]).hexdigest()
     members["bundle.json"] = json.dumps(body | {"digest": digest({k: v for k, v in body.items() if k != "digest"})}).encode()
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+    return written(path, members)
+
+
+def written(path, members, compression=zipfile.ZIP_DEFLATED):
+    with zipfile.ZipFile(path, "w", compression) as archive:
         for name, data in members.items():
             archive.writestr(name, data)
     return path
@@ -146,10 +147,11 @@ class Bomb:
 
 
 CHANGES = {
-    "newer": (lambda m, b: b.update(schema=7), r"newer symfpu \(schema 7; this one reads 6\); update symfpu"),
+    "newer": (lambda m, b: b.update(schema=8), r"newer symfpu \(schema 8; this one reads 7\); update symfpu"),
+    "older": (lambda m, b: b.update(schema=6), r"is of an older format \(schema 6; this symfpu reads 7\); compute it again"),
     "newer without a digest": (lambda m, b: b.update(schema=8, arrays={}), "newer symfpu"),
     "schema 0": (lambda m, b: b.update(schema=0), "schema"),
-    "schema as text": (lambda m, b: b.update(schema="1"), "schema"),
+    "schema as text": (lambda m, b: b.update(schema="7"), "schema"),
     "foreign format": (lambda m, b: b.update(format="another"), "is not a symfpu bundle"),
     "missing array": (lambda m, b: m.pop("corrections.npy"), "corrections"),
     "undeclared array": (lambda m, b: b["arrays"].pop("corrections"), "corrections"),
@@ -161,8 +163,10 @@ CHANGES = {
         "is not an array of 4 numbers <f8",
     ),
     "other shape": (lambda m, b: m.update({"coordinates.npy": numpy_file(np.zeros(999))}), "coordinates.npy holds 8120 bytes where"),
-    "huge order": (lambda m, b: b["series"].update(order=10**18), "more rows than the file holds"),
-    "huge chain": (lambda m, b: b["series"].update(N=10**18), "coordinates"),
+    "high order": (lambda m, b: b["series"].update(order=10**4), "more rows than the file holds"),
+    "long chain": (lambda m, b: b["series"].update(N=10**6), "coordinates"),
+    "huge order": (lambda m, b: b["series"].update(order=10**18), "order = .*from 0 to 10000"),
+    "huge chain": (lambda m, b: b["series"].update(N=10**18), "N = .*from 2 to 1000000"),
     "no chain": (lambda m, b: b["series"].update(N=1), "N = 1"),
     "no coupling": (lambda m, b: b["series"].update(alpha="0"), "alpha, beta"),
     "zero denominator": (lambda m, b: b["series"].update(alpha="1/0"), "ZeroDivisionError"),
@@ -210,11 +214,8 @@ def test_changes_without_the_digest_are_found(healthy, tmp_path):
         members, _ = opened(tmp_path / "edited")
         old, new = (b'"0.3"', b'"0.4"') if name == "bundle.json" else (members[name][-8:], b"12345678")
         members[name] = members[name].replace(old, new)
-        with zipfile.ZipFile(tmp_path / "edited", "w") as archive:
-            for member, data in members.items():
-                archive.writestr(member, data)
         with pytest.raises(BundleError, match="does not match its digest"):
-            load(tmp_path / "edited")
+            load(written(tmp_path / "edited", members))
 
 
 def test_a_member_may_occur_once(healthy, tmp_path):
@@ -223,22 +224,6 @@ def test_a_member_may_occur_once(healthy, tmp_path):
         archive.writestr("coordinates.npy", b"another")
     with pytest.raises(BundleError, match="a member occurs twice"):
         load(tmp_path / "twice")
-
-
-@pytest.mark.parametrize(
-    ("nodes", "message"),
-    [
-        ([["sum", 1, 1], ["number", "1"]], "before its parts"),
-        ([["number", "1"], ["sum", -1, -1]], "before its parts"),
-        ([["eval", "exit()"]], "before its parts"),
-        ([["eval"]], "KeyError 'eval'"),
-        ([["number", "1"]], "is none of the expressions"),
-    ],
-)
-def test_forged_expressions_are_refused(nodes, message, tmp_path):
-    path = save(tmp_path / "symbolic", lindstedt(ALPHA, (1, 2), order=2))
-    with pytest.raises(BundleError, match=message):
-        load(forged(path, lambda m, b: b["series"].update(expressions=nodes)))
 
 
 def forged_integers(name, change):
@@ -288,7 +273,8 @@ def test_forged_programs_are_refused(forge, message, tmp_path):
         ({"seeds": [1, "N-2"]}, "holds .* bytes where"),
         ({"seeds": [1, "N+1"]}, "seeds = 'N\\+1'"),
         ({"ring": "float64", "frequencies": ["0.1", "1.9"]}, "no series of the ring 'float64' is one for all N"),
-        ({"order": 10**18}, "more rows than the file holds"),
+        ({"order": 10**4}, "more rows than the file holds"),
+        ({"order": 10**18}, "order = .*from 0 to 10000"),
     ],
     ids=str,
 )
@@ -301,11 +287,8 @@ def test_forged_series_for_all_lengths_are_refused(entries, message, tmp_path):
 def test_compressions_that_inflate_without_a_bound_are_refused(healthy, tmp_path):
     (tmp_path / "bzip2").write_bytes(healthy[1])
     members, _ = opened(tmp_path / "bzip2")
-    with zipfile.ZipFile(tmp_path / "bzip2", "w", zipfile.ZIP_BZIP2) as archive:
-        for name, data in members.items():
-            archive.writestr(name, data)
     with pytest.raises(BundleError, match="is compressed by method 12"):
-        load(tmp_path / "bzip2")
+        load(written(tmp_path / "bzip2", members, zipfile.ZIP_BZIP2))
 
 
 def test_names_of_symbols_are_only_names(tmp_path):
@@ -330,7 +313,7 @@ def memory_of(action):
 
 def test_claims_and_bombs_allocate_nothing(healthy, tmp_path):
     """A member of 200 MB in 200 kB; a header for 10^15 numbers; sizes that the directory makes up."""
-    path, size = tmp_path / "bomb", struct.pack("<I", len(opened_bytes(healthy[1], "coordinates.npy")))
+    path, size = tmp_path / "bomb", struct.pack("<I", len(member_of(healthy[1], "coordinates.npy")))
     header = numpy_file(np.zeros(0)).replace(b"(0,), }" + b" " * 14, b"(1000000000000000,), }"[:21])
     cases = [{"coordinates.npy": numpy_file(np.zeros(25_000_000))}, {"coordinates.npy": header}]
     for members in cases:
@@ -345,7 +328,7 @@ def test_claims_and_bombs_allocate_nothing(healthy, tmp_path):
     assert "claims 2147483648 bytes" in message
 
 
-def opened_bytes(data, name):
+def member_of(data, name):
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         return archive.read(name)
 

@@ -4,13 +4,9 @@ from fractions import Fraction
 
 import pytest
 
+from symfpu import Chain, InputError, lindstedt, refine, solve_amplitudes
 from symfpu.certified.kam import diophantine, kam_sizes, root_near
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.refinement.tori import refine
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
-from tests.test_pickle import two_angles
+from tests.results import two_angles
 from tests.tolerances import KAM_DIGITS, KAM_DOUBLES
 
 NOBLE = (61, -209, 179)  # (19 phi + 7) / (11 phi + 4), phi the golden mean

@@ -2,36 +2,23 @@
 
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 
 import mpmath
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.certified.residual import prove_residual
+from symfpu import Chain, InputError, breather_at_amplitude, prove_residual, refine, torus_at_amplitudes
 from symfpu.certified.rounded_torus import polynomial_of, rounded_torus
 from symfpu.certified.series import Series, product
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.refinement.tori import refine, refine_at_amplitudes
 from symfpu.reports.certified import residual_proof_text
-from symfpu.tori.frequencies import torus_at_amplitudes
-from symfpu.tori.quasiperiodic import FourierTorus
+from tests.certified.tori import AMPLITUDES, entries, one_off, rational, torus, turned, value
 from tests.tolerances import ENERGY_OF_TORUS, TORUS_RESIDUAL
 
-AMPLITUDES = {1: "0.2", 2: "0.1"}
 LAWS = {"alpha": {"alpha": "0.3"}, "beta": {"beta": "1/2"}, "both": {"alpha": "1/3", "beta": "0.2"}}
 NEAR = 3  # times the largest residual on a grid: the bound is no more
 
 
-@cache
-def torus(law="alpha", N=3):
-    guess = torus_at_amplitudes(Chain(N, **LAWS[law]), AMPLITUDES, order=4)
-    return refine_at_amplitudes(guess, AMPLITUDES)
-
-
-def on_a_grid(torus, points=24):
+def on_a_grid(torus, points):
     """Largest |x'' - force| of every particle at the angles of a grid, in 30 digits."""
     rounded = rounded_torus(torus)
     chain = torus.chain
@@ -42,9 +29,9 @@ def on_a_grid(torus, points=24):
             x, moved = [0] * (chain.N + 1), [0] * (chain.N - 1)
             for j, series in enumerate(rounded.particles):
                 for nu, c in entries(series):
-                    value = c * mpmath.cospi(nu[0] * a + nu[1] * b)
-                    x[j + 1] += value
-                    moved[j] -= rate(torus, nu) ** 2 * value
+                    wave = c * mpmath.cospi(turned(nu, (a, b)))
+                    x[j + 1] += wave
+                    moved[j] -= rate(torus, nu) ** 2 * wave
             r = [x[j + 1] - x[j] for j in range(chain.N)]
             for j in range(chain.N - 1):
                 force = slope(rounded, r[j + 1]) - slope(rounded, r[j])
@@ -52,28 +39,19 @@ def on_a_grid(torus, points=24):
     return worst
 
 
-def entries(series):
-    highest = series.highest
-    for at in zip(*series.values.nonzero(), strict=True):
-        nu = [int(n) - m for n, m in zip(at, highest, strict=True)]
-        yield nu, mpmath.ldexp(int(series.values[at]), -series.places)
-
-
 def rate(torus, nu):
-    total = sum(n * w for n, w in zip(nu, torus.frequencies, strict=True))
-    return mpmath.mpf(total.numerator) / total.denominator
+    return rational(turned(nu, torus.frequencies))
 
 
 def slope(rounded, r):
-    terms = rounded.couplings.items()
-    return r + sum(mpmath.mpf(c.numerator) / c.denominator * r**k for k, c in terms)
+    return r + sum(rational(c) * r**k for k, c in rounded.couplings.items())
 
 
 @pytest.mark.parametrize("law", ["alpha", pytest.param("beta", marks=pytest.mark.long), pytest.param("both", marks=pytest.mark.long)])
 def test_the_bound_is_above_the_residual_on_a_grid_and_near_it(law):
     with mpmath.workdps(30):
-        found = prove_residual(torus(law))
-        on_grid = on_a_grid(torus(law), 8)
+        found = prove_residual(torus(**LAWS[law]))
+        on_grid = on_a_grid(torus(**LAWS[law]), 8)
         for bound, value in zip(found.particles, on_grid, strict=True):
             assert value <= bound
         assert found.bound <= NEAR * max(on_grid)
@@ -81,15 +59,9 @@ def test_the_bound_is_above_the_residual_on_a_grid_and_near_it(law):
 
 def test_a_torus_with_one_coefficient_off_has_that_much_more_of_it():
     """(nu.omega)^2 - Omega^2 times the change, here of a harmonic where that is about 1."""
-    exact = torus()
-    moved = exact.cosines.copy()
-    row = exact.harmonics.tolist().index([2, 0])
     change = 1e-6
-    moved[row, 1] += change
-    off = FourierTorus(exact.chain, exact.seeds, exact.frequencies, exact.harmonics, moved, exact.phases)
-    found = prove_residual(off).bound
-    assert change / 10 < found < 10 * change
-    assert prove_residual(exact).bound < TORUS_RESIDUAL
+    assert change / 10 < prove_residual(one_off(torus(), change)).bound < 10 * change
+    assert prove_residual(torus()).bound < TORUS_RESIDUAL
 
 
 def energy_at(torus, a, b):
@@ -97,21 +69,22 @@ def energy_at(torus, a, b):
     rounded = rounded_torus(torus)
     x, p = [0] * (torus.chain.N + 1), [0] * (torus.chain.N + 1)
     for j, series in enumerate(rounded.particles, start=1):
-        for nu, c in entries(series):
-            turn = nu[0] * a + nu[1] * b
-            x[j] += c * mpmath.cospi(turn)
-            p[j] -= c * rate(torus, nu) * mpmath.sinpi(turn)
+        x[j] = value(series, (a, b))
+        p[j] = -sum(c * rate(torus, nu) * mpmath.sinpi(turned(nu, (a, b))) for nu, c in entries(series))
     r = [x[j + 1] - x[j] for j in range(torus.chain.N)]
     terms = {1: Fraction(1), **rounded.couplings}
-    stored = sum(mpmath.mpf(c.numerator) / c.denominator * s ** (k + 1) / (k + 1) for k, c in terms.items() for s in r)
+    stored = sum(rational(c) * s ** (k + 1) / (k + 1) for k, c in terms.items() for s in r)
     return sum(v**2 for v in p) / 2 + stored
 
 
-@pytest.mark.parametrize("digits", [None, 30])
-@pytest.mark.parametrize(("law", "N"), [("alpha", 3), ("beta", 4), ("both", 3)])
+LAWS_AND_LENGTHS = [("alpha", 3), ("beta", 4), ("both", 3)]
+PRECISE = [pytest.param(*case, 30, marks=[pytest.mark.long] * (case[0] != "alpha")) for case in LAWS_AND_LENGTHS]
+
+
+@pytest.mark.parametrize(("law", "N", "digits"), [*((*case, None) for case in LAWS_AND_LENGTHS), *PRECISE])
 def test_the_energy_is_within_its_radius_at_all_angles(law, N, digits):
     """And the radius is that of a conserved quantity: as small as what the torus leaves of the equations."""
-    exact = torus(law, N) if digits is None else refine(torus(law, N), digits=digits)
+    exact = torus(N, **LAWS[law]) if digits is None else refine(torus(N, **LAWS[law]), digits=digits)
     with mpmath.workdps(60):
         found = prove_residual(exact)
         for a, b in [(0, 0), ("0.3", "1.1"), ("1.7", "0.45"), ("0.9", "0.2")]:
@@ -120,10 +93,7 @@ def test_the_energy_is_within_its_radius_at_all_angles(law, N, digits):
 
 
 def test_a_moved_coefficient_shows_in_the_radius_of_the_energy():
-    exact = torus()
-    moved = exact.cosines.copy()
-    moved[exact.harmonics.tolist().index([2, 0]), 1] += 1e-6
-    off = FourierTorus(exact.chain, exact.seeds, exact.frequencies, exact.harmonics, moved, exact.phases)
+    exact, off = torus(), one_off(torus(), 1e-6)
     with mpmath.workdps(30):
         found = prove_residual(off)
         values = [energy_at(off, mpmath.mpf(k) / 8, mpmath.mpf(3 * k) / 8) for k in range(16)]
@@ -168,8 +138,8 @@ def padded(values, shape):
 def test_powers_of_any_degree_are_within_their_error():
     r = Series(np.array([3, 100, 3], dtype=object), 10)
     found = polynomial_of(r, {2: Fraction(1, 3), 5: Fraction(-2, 7)})
-    value = (100 + 6) / mpmath.mpf(2**10)
-    exact = value**2 / 3 - 2 * value**5 / 7
+    x = (100 + 6) / mpmath.mpf(2**10)
+    exact = x**2 / 3 - 2 * x**5 / 7
     assert abs(sum(int(x) for x in found.values) / mpmath.mpf(2**10) - exact) <= mpmath.mpf(found.error) / 2**10
 
 
@@ -181,7 +151,7 @@ def test_what_it_is_not_about_is_refused_by_name():
         prove_residual(guess)
     with pytest.raises(InputError):
         prove_residual("torus")
-    swapped = torus()
-    wrong = replace(swapped.in_doubles(), cosines=swapped.in_doubles().cosines[:, ::-1])
+    right = torus().in_doubles()
+    wrong = replace(right, cosines=right.cosines[:, ::-1])
     with pytest.raises(InputError, match="reflection"):
         prove_residual(wrong)

@@ -9,20 +9,15 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import breather_at_amplitude
+import symfpu
+from symfpu import Chain, InputError, NoStayProof, prove_stay, refine, refine_at_amplitudes, torus_at_amplitudes
 from symfpu.certified.frame import directions_of
 from symfpu.certified.growth import Growth
 from symfpu.certified.norms import norms, weights_of
-from symfpu.certified.residual import prove_residual
 from symfpu.certified.rounded_torus import residual_of, rounded_torus, stretches_of
-from symfpu.certified.stay import NoStayProof, prove_stay, told_apart
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.normal.modes import NoNormalModes
+from symfpu.certified.stay import told_apart
 from symfpu.normal.search import _Search
-from symfpu.refinement.tori import refine, refine_at_amplitudes
-from symfpu.tori.frequencies import torus_at_amplitudes
-from symfpu.tori.quasiperiodic import FourierTorus
+from tests.certified.tori import one_off, rational, torus, value
 from tests.tolerances import COARSE_STAY, DIGITS_STAY, DOUBLES_STAY, FRAME_RESIDUAL, FRAME_SEEN
 
 
@@ -31,27 +26,22 @@ def silent(*_):
 
 
 @cache
-def torus(N=3, law=("alpha", "0.3"), amplitudes=(("1", "0.2"), ("2", "0.1"))):
-    sizes = {int(q): a for q, a in amplitudes}
-    guess = torus_at_amplitudes(Chain(N, **dict([law])), sizes, order=4)
-    return refine_at_amplitudes(guess, sizes)
+def precise():
+    return refine(torus(), digits=30)
 
 
 @cache
-def coarse(size=1e-10):
-    """A torus with one coefficient off, so that orbits leave it visibly."""
-    exact = torus()
-    moved = exact.cosines.copy()
-    moved[exact.harmonics.tolist().index([2, 0]), 1] += size
-    return FourierTorus(exact.chain, exact.seeds, exact.frequencies, exact.harmonics, moved, exact.phases)
+def coarse():
+    """A torus that is off, so that orbits leave it visibly."""
+    return one_off(torus(), 1e-10)
 
 
 def test_a_frame_takes_all_modes(monkeypatch):
     """Where one is missing it names that one: the others are no frame."""
     found = _Search.mode
     monkeypatch.setattr(_Search, "mode", lambda search, q, *rest: None if q == 3 else found(search, q, *rest))
-    with pytest.raises(NoNormalModes, match="continues mode 3"):
-        directions_of(breather_at_amplitude(Chain(4, alpha="0.3"), 2, "0.1"), silent)
+    with pytest.raises(symfpu.NoNormalModes, match="continues mode 3"):
+        directions_of(symfpu.breather_at_amplitude(Chain(4, alpha="0.3"), 2, "0.1"), silent)
 
 
 def taylor(torus, time, step, order=20, digits=30):
@@ -59,7 +49,7 @@ def taylor(torus, time, step, order=20, digits=30):
     rounded = rounded_torus(torus)
     N, terms = torus.chain.N, {1: Fraction(1), **rounded.couplings}
     with mpmath.workdps(digits):
-        x = [particle(rounded, j, [0, 0]) for j in range(N - 1)]
+        x = [value(series, (0, 0)) for series in rounded.particles]
         p = [mpmath.mpf(0)] * (N - 1)
         for _ in range(round(time / step)):
             series = [[a, b] for a, b in zip(x, p, strict=True)]
@@ -82,19 +72,9 @@ def tensions(series, terms, k):
         for n in range(1, max(terms) + 1):
             power = r if n == 1 else [sum(power[i] * r[m - i] for i in range(m + 1)) for m in range(k + 1)]
             if n in terms:
-                total += mpmath.mpf(terms[n].numerator) / terms[n].denominator * power[k]
+                total += rational(terms[n]) * power[k]
         found.append(total)
     return found
-
-
-def particle(rounded, j, turns):
-    """x_j at angles in half turns."""
-    series, total = rounded.particles[j], mpmath.mpf(0)
-    for at in zip(*series.values.nonzero(), strict=True):
-        nu = [int(n) - m for n, m in zip(at, series.highest, strict=True)]
-        angle = sum(n * a for n, a in zip(nu, turns, strict=True))
-        total += mpmath.ldexp(int(series.values[at]), -series.places) * mpmath.cospi(angle)
-    return total
 
 
 def stretches(x):
@@ -104,10 +84,9 @@ def stretches(x):
 
 def at_time(torus, time):
     """Stretches of the torus at angles omega t."""
-    rounded = rounded_torus(torus)
     with mpmath.workdps(30):
-        turns = [mpmath.mpf(w.numerator) / w.denominator * time / mpmath.pi for w in torus.frequencies]
-        return stretches([particle(rounded, j, turns) for j in range(torus.chain.N - 1)])
+        turns = [rational(w) * time / mpmath.pi for w in torus.frequencies]
+        return stretches([value(series, turns) for series in rounded_torus(torus).particles])
 
 
 def slopes(torus):
@@ -119,7 +98,7 @@ def slopes(torus):
 
 def test_an_integrated_orbit_stays_within_the_distance_and_the_drift():
     """By Taylor series of order 20 in 30 digits; the torus is off by 1e-10, so that it leaves."""
-    time = 16
+    time = 8
     proof = prove_stay(coarse(), time=time)
     orbit, near = taylor(coarse(), time, mpmath.mpf(1) / 4), at_time(coarse(), time)
     away = max(abs(a - b) for a, b in zip(orbit, near, strict=True))
@@ -150,10 +129,12 @@ def test_a_frequency_of_the_frame_that_is_off_is_seen():
 
 
 def test_thirty_digits_stay_for_1e9_and_doubles_say_how_long():
-    proof = prove_stay(refine(torus(), digits=30))
+    proof = prove_stay(precise())
     assert proof.distance < DIGITS_STAY
     assert proof.longest > 1e13
     assert proof.distance_at("1e6") < proof.distance < proof.distance_at("1e12")
+    with pytest.raises(InputError, match="time"):
+        prove_stay(torus(), time=0)
     with pytest.raises(NoStayProof, match="more digits") as caught:
         prove_stay(torus())
     assert 1e4 < caught.value.longest < 1e9
@@ -162,9 +143,9 @@ def test_thirty_digits_stay_for_1e9_and_doubles_say_how_long():
 
 def test_the_distance_is_about_residual_times_time():
     """No Gronwall: a hundred times the time, a hundred times the distance."""
-    proof = prove_stay(refine(torus(), digits=30), time=10**4)
+    proof = prove_stay(precise(), time=10**4)
     assert 90 < proof.distance_at(10**6) / proof.distance_at(10**4) < 110
-    assert proof.bound == prove_residual(refine(torus(), digits=30)).bound
+    assert proof.bound == symfpu.prove_residual(precise()).bound
 
 
 def test_the_time_is_below_that_of_the_scalar_equation():
@@ -178,11 +159,6 @@ def test_the_time_is_below_that_of_the_scalar_equation():
     assert d < growth.distance(growth.time(Fraction(d))) < 1.05 * d
 
 
-def test_hyperbolic_tori_and_no_times_are_refused():
-    with pytest.raises(InputError, match="time"):
-        prove_stay(torus(), time=0)
-
-
 @pytest.mark.long
 def test_a_hyperbolic_torus_is_refused_by_name():
     """Seeds 1 and 5 of N = 8, beta = 1 (docs/normal-modes.md)."""
@@ -193,9 +169,9 @@ def test_a_hyperbolic_torus_is_refused_by_name():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("law", [("beta", "1/2"), ("potential", "poly:1/4,0,1/5")])
+@pytest.mark.parametrize("law", [{"beta": "1/2"}, {"potential": "poly:1/4,0,1/5"}], ids=str)
 def test_other_polynomials(law):
-    proof = prove_stay(refine(torus(4, law), digits=30))
+    proof = prove_stay(refine(torus(4, **law), digits=30))
     assert proof.distance < DIGITS_STAY
 
 

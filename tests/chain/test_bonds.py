@@ -5,10 +5,9 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from numba import njit
 
-from symfpu.chain import bond_loops, bonds
-from symfpu.chain.chain import Chain
+from symfpu import Chain
+from symfpu.chain import bonds
 from symfpu.numbers.arithmetic import MULTIPRECISION
 from tests.tolerances import ROUNDING
 
@@ -37,15 +36,6 @@ def test_what_lies_beyond_the_harmonic_law_does_not_cancel(law):
     tension, stiffness = (derivative(law, Fraction(r), order) for order in (1, 2))
     assert bonds.anharmonic_tension(law, r) == pytest.approx(float(tension - Fraction(r)), rel=ROUNDING)
     assert bonds.anharmonic_stiffness(law, r) == pytest.approx(float(stiffness - 1), rel=ROUNDING)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("function", [bonds.tension, bonds.stiffness])
-def test_loops_compile_the_same_functions(law, function):
-    loop = {"tension": bond_loops.tension, "stiffness": bond_loops.stiffness}[function.__name__]
-    compiled = njit(error_model="numpy")(lambda law, r: loop(law, r))
-    assert [compiled(law, r) for r in STRETCHES] == [function(law, r) for r in STRETCHES]
 
 
 def test_a_chain_gives_its_law_in_the_arithmetic_asked_for():

@@ -2,20 +2,19 @@
 
 import math
 import pickle
+from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
 
-import mpmath
 import numpy as np
 import pytest
 import sympy
-from numba import njit
 
-from symfpu import Chain, lennard_jones, morse, polynomial, toda
-from symfpu.chain import bond_loops, bonds
+from symfpu import Chain, InputError, integrate, lennard_jones, lindstedt, morse, polynomial, toda
+from symfpu.chain import bonds
+from symfpu.chain.potentials.potential import Growth, Potential
 from symfpu.chain.potentials.typed import kinds, potential_of_text
-from symfpu.errors import InputError
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION
-from tests.tolerances import FORTY_DIGITS, ROUNDING
+from tests.tolerances import ROUNDING, THOUSAND_ROUNDINGS
 
 POTENTIALS = [
     toda("1/2"),
@@ -42,30 +41,6 @@ def potential(request):
     return request.param
 
 
-@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.__name__)
-def test_functions_are_those_of_the_expression(potential, function):
-    r = sympy.Symbol("r")
-    exact = sympy.lambdify(r, FUNCTIONS[function](potential.expression(r), r), "mpmath")
-    with mpmath.workdps(90):
-        expected = [exact(mpmath.mpf(x)) for x in STRETCHES]
-    law = potential.law(DOUBLES)
-    size = [abs(float(e)) + x * x for e, x in zip(expected, STRETCHES, strict=True)]  # a zero of its own is no error
-    found = [function(law, x) for x in STRETCHES]
-    assert np.allclose((np.array(found) - np.array(expected, dtype=float)) / size, 0, atol=100 * ROUNDING)
-    assert np.array_equal(function(law, np.array(STRETCHES)), found)
-    with mpmath.workdps(55):
-        many = [function(potential.law(MULTIPRECISION), mpmath.mpf(x)) for x in STRETCHES]
-        assert all(abs(a - b) <= FORTY_DIGITS * s for a, b, s in zip(many, expected, size, strict=True))
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", ["tension", "stiffness"])
-def test_loops_compile_the_same_functions(potential, name):
-    loop, law = getattr(bond_loops, name), potential.law(DOUBLES)
-    compiled = njit(error_model="numpy")(lambda law, r: loop(law, r))
-    assert np.allclose([compiled(law, r) for r in STRETCHES], [loop(law, r) for r in STRETCHES], rtol=ROUNDING, atol=0)
-
-
 def test_coefficients_are_those_of_the_taylor_series(potential):
     r = sympy.Symbol("r")
     V = potential.expression(r)
@@ -76,22 +51,129 @@ def test_coefficients_are_those_of_the_taylor_series(potential):
     assert potential.even == (sympy.simplify(V - V.subs(r, -r)) == 0)
 
 
-def test_growths_add_up_to_the_tension(potential):
-    """Coefficient by coefficient: (n + 1) g_(n+1) + slope n g_n = rate g_n."""
-    tension = [Fraction(0)] * 9
-    for growth in potential.growths():
-        g = Fraction(1)
-        for n in range(1, 9):
-            g *= (growth.rate - growth.slope * (n - 1)) / n
-            tension[n] += growth.weight * g
-    expected = [0, 1, *(potential.coefficient(n + 1) for n in range(2, 9))]
-    assert tension == expected or not potential.growths()
+class SinhLaw(NamedTuple):
+    """Of V = (cosh(a r) - 1)/a^2; it calls functions of this module and a method of its own."""
+
+    a: float
+
+    def potential(self, r):
+        return (np.cosh(self.a * r) - 1) / self.a**2
+
+    def tension(self, r):
+        return difference(self.a, r) / self.a
+
+    def stiffness(self, r):
+        return self.sum_of_exponentials(r)
+
+    def sum_of_exponentials(self, r):
+        return half_sum(self.a, r, 1)
+
+    def anharmonic_tension(self, r):
+        return self.tension(r) - r
+
+    def anharmonic_stiffness(self, r):
+        return self.stiffness(r) - 1
+
+
+def exponential(x):
+    return np.exp(x)
+
+
+def half_sum(a, r, sign):
+    return (exponential(a * r) + sign * exponential(-a * r)) / 2
+
+
+def difference(a, r):
+    """Two functions that call the same one, which calls another."""
+    return half_sum(a, r, -1) + 0 * difference_again(a, r)
+
+
+def difference_again(a, r):
+    return half_sum(a, r, -1)
+
+
+@dataclass(frozen=True, repr=False)
+class Cosh(Potential):
+    """A potential as a user writes one, whose tension is a sum of growths and V even or said to be."""
+
+    kind = "cosh"
+    a: Fraction
+    even: bool = True
+    extra: Fraction = Fraction(0)
+    unit: Fraction = Fraction(1)
+
+    @property
+    def parameters(self):
+        return (self.a,)
+
+    def coefficient(self, n):
+        return self.extra if n % 2 else self.a ** (n - 2) / math.factorial(n - 1)
+
+    def growths(self):
+        weight = self.unit / (2 * self.a)
+        return Growth(weight, Fraction(0), self.a), Growth(-weight, Fraction(0), -self.a)
+
+    def law(self, numbers):
+        return SinhLaw(numbers.number(self.a))
+
+    def expression(self, r):
+        a = sympy.Rational(self.a)
+        return (sympy.cosh(a * r) - 1) / a**2
+
+
+@pytest.mark.parametrize("digits", [None, 30])
+@pytest.mark.parametrize("even", [True, False])
+def test_series_of_an_even_potential_with_growths_are_those_of_its_polynomial(even, digits):
+    chain = Chain(8, potential=Cosh(Fraction(2), even))
+    same = Chain(8, potential=polynomial(0, "2/3", 0, "2/15", 0, "4/315"))
+    order = 2 if even else 4
+    found = lindstedt(chain, (1, 2), ("0.41", "0.817"), order, digits=digits).frequency_correction(1, order)
+    expected = lindstedt(same, (1, 2), ("0.41", "0.817"), 2, digits=digits).frequency_correction(1, 2)
+    found, expected = (sympy.Poly(sympy.sympify(x), *sympy.symbols("A1 A2")) for x in (found, expected))
+    scale = 1 if even else Fraction(2, 3) ** 2  # mu is c_4/(2N), or 1/sqrt(2N) where V is not said to be even
+    sizes = [(abs(a - b * sympy.Rational(scale)), abs(a)) for a, b in zip(found.coeffs(), expected.coeffs(), strict=True)]
+    assert all(size > 0 and off <= ROUNDING * 100 * size for off, size in sizes)
+
+
+@pytest.mark.long
+def test_orbits_of_a_law_that_calls_functions_go_together():
+    own, known = Chain(8, potential=Cosh(Fraction(1))), Chain(8, potential="expr:cosh(r)-1")
+    Q = np.outer(np.linspace(0.1, 0.3, 9), np.ones(7))
+    found, expected = (integrate(chain, Q, 0 * Q, 20, step=0.1, samples=4).Q for chain in (own, known))
+    assert np.allclose(found, expected, rtol=0, atol=THOUSAND_ROUNDINGS)
+
+
+WRONG = {
+    "even": (Cosh(Fraction(2), True, Fraction(1, 3)), "coefficient(3) = 0, since V is even"),
+    "growths": (Cosh(Fraction(2), True, Fraction(0), Fraction(2)), "growths whose sum has c_2 = 1"),
+    "coefficient": (Cosh(Fraction(2), False, Fraction(1, 3)), "growths whose sum has c_3 = 1/3"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_potential_that_contradicts_itself_is_refused(name):
+    potential, allowed = WRONG[name]
+    with pytest.raises(InputError) as caught:
+        Chain(8, potential=potential)
+    assert allowed in caught.value.allowed
 
 
 def test_typed_and_printed(potential):
     assert potential_of_text(potential.text) == potential
     assert repr(potential) == potential.text.replace(":", "(").replace(",", ", ") + ")"
     assert pickle.loads(pickle.dumps(Chain(8, potential=potential))) == Chain(8, potential=potential)
+
+
+@pytest.mark.parametrize("powers", [(12, 6), ("25/2", "13/3")])
+def test_couplings_of_lennard_jones_are_binomials_to_high_powers(powers):
+    """Each from the one before; the 5000th of whole powers is as near as the tenth."""
+    m, n = (Fraction(p) for p in powers)
+    potential, steep, flat = lennard_jones(*powers), Fraction(1), Fraction(1)
+    for k in range(60):
+        assert potential.coefficient(k + 1) == (flat - steep) / (m - n)
+        steep, flat = (x * Fraction(-p - 1 - k) / (k + 1) for x, p in ((steep, m), (flat, n)))
+    chain = Chain(8, potential=lennard_jones(12, 6))
+    assert len(chain.relative_couplings(5000)) == 4999
 
 
 def test_short_names():

@@ -6,8 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symfpu.chain.propagation import coupling_sequence, excitation_sequence, reachable_modes
-from symfpu.errors import InputError
+from symfpu import InputError, coupling_sequence, excitation_sequence, reachable_modes
+from symfpu.chain import propagation
+from symfpu.chain.propagation import carried_modes
+from tests.refusals import each, refused
 
 LENGTH = {"alpha": lambda k: k + 1, "beta": lambda k: 2 * k + 1, "alpha+beta": lambda k: k + 1}
 
@@ -40,14 +42,6 @@ def test_reachable_modes_are_those_of_all_sign_vectors(chain, model):
     assert reachable_modes(N, seeds, orders, model=model) == expected
 
 
-@given(chains(most_seeds=6, most_bonds=80), st.sampled_from(["alpha", "beta"]), st.integers(0, 12))
-def test_modes_are_plain_ascending_integers_of_the_chain(chain, model, order):
-    N, seeds = chain
-    for modes in (*reachable_modes(N, seeds, order, model=model), *excitation_sequence(N, seeds, order, model=model)):
-        assert list(modes) == sorted(set(modes))
-        assert all(type(q) is int and 0 < q < N for q in modes)
-
-
 @given(chains(most_seeds=4, most_bonds=60), st.sampled_from(["alpha", "beta"]))
 def test_the_sequence_takes_each_reachable_mode_once_where_it_first_appears(chain, model):
     N, seeds = chain
@@ -73,21 +67,6 @@ def test_breathers_excite_one_mode_an_order(N, data, model):
     modes = [folded(LENGTH[model](k) * q0, N) for k in range(16)]
     expected = [(q,) if 0 < q < N and q not in modes[:k] else () for k, q in enumerate(modes)]
     assert excitation_sequence(N, [q0], 15, model=model) == expected
-
-
-@given(st.integers(2, 100), st.data())
-def test_even_breathers_excite_even_modes_and_odd_ones_odd_modes_in_beta(N, data):
-    q0 = data.draw(st.integers(1, N - 1))
-    for model in ("beta", "alpha") if q0 % 2 == 0 else ("beta",):
-        assert all((q - q0) % 2 == 0 for modes in excitation_sequence(N, [q0], 10, model=model) for q in modes)
-
-
-@given(st.integers(2, 100), st.data())
-def test_odd_breathers_excite_both_parities_in_alpha(N, data):
-    q0 = data.draw(st.integers(1, N - 1).filter(lambda q: q % 2))
-    modes = [q for modes in excitation_sequence(N, [q0], 2 * N, model="alpha") for q in modes]
-    if modes != [q0]:
-        assert {q % 2 for q in modes} == {0, 1}
 
 
 def test_seeds_3_and_5():
@@ -117,38 +96,10 @@ def test_high_frequency_packets_excite_packets_at_either_end(s, k, more):
     assert excitation_sequence(N, seeds, k, model="beta")[k] == alpha[2 * k]
 
 
-@pytest.mark.parametrize("model", ["alpha", "beta"])
-@pytest.mark.parametrize(("multiple", "divisor"), [(1, 2), (2, 3)])
-def test_symmetric_modes_stay_alone(model, multiple, divisor):
-    """Example v: N/2 and 2N/3 in both models."""
-    for N in (divisor * n for n in range(1, 30)):
-        if N > 1:
-            seed = multiple * N // divisor
-            assert excitation_sequence(N, [seed], 12, model=model) == [(seed,)] + [()] * 12
-
-
-def test_one_third_stays_alone_in_beta_and_excites_two_thirds_in_alpha():
-    for N in range(3, 91, 3):
-        assert excitation_sequence(N, [N // 3], 12, model="beta") == [(N // 3,)] + [()] * 12
-        assert excitation_sequence(N, [N // 3], 12, model="alpha") == [(N // 3,), (2 * N // 3,)] + [()] * 11
-
-
-@pytest.mark.parametrize(
-    ("arguments", "named"),
-    [
-        ((1, (1,), 2), "N"),
-        ((8, (), 2), "seeds"),
-        ((8, (1, 1), 2), "seeds"),
-        ((8, (8,), 2), "seeds"),
-        ((8, (1,), -1), "order"),
-        ((8, (1,), 1.5), "order"),
-    ],
-)
-def test_bad_arguments_are_refused_by_name(arguments, named):
-    for rule in (excitation_sequence, reachable_modes):
-        with pytest.raises(InputError) as caught:
-            rule(*arguments)
-        assert caught.value.argument == named
+@each(N=[1], seeds=[(), (1, 1), (8,)], order=[-1, 1.5])
+@pytest.mark.parametrize("rule", [excitation_sequence, reachable_modes])
+def test_bad_arguments_are_refused_by_name(rule, name, value):
+    refused(rule, name, value, N=8, seeds=(1,), order=2)
 
 
 def test_unknown_models_are_refused():
@@ -189,3 +140,41 @@ def test_model_and_potential_are_not_both_taken():
             rule(8, (1,), 2, model="alpha", potential="toda:1")
         with pytest.raises(InputError, match=r"^potential = "):
             rule(8, (1,), 2, potential=1)
+
+
+@given(chains(most_seeds=2, most_bonds=12), st.sampled_from(sorted(LENGTH)))
+def test_carried_modes_are_those_of_all_products_of_cosines(chain, model):
+    """A product of so many factors of each seed, with every sign in time and every sign in space."""
+    N, seeds = chain
+    least = 2 if model != "beta" else 3
+    found = set()
+    for r in range(1, 2 * N + 4):
+        if model == "beta" and r % 2 == 0:
+            continue
+        for first in range(r + 1) if len(seeds) == 2 else (r,):
+            factors = (first, r - first)[: len(seeds)]
+            if max(factors) > 2 * N:
+                continue
+            spans = [range(-k, k + 1, 2) for k in factors]
+            waves = {sum(j * q for j, q in zip(js, seeds, strict=True)) for js in product(*spans)}
+            harmonics = [nu for nu in product(*spans) if sum(map(abs, nu)) <= least]
+            found |= {(nu, folded(wave, N)) for nu in harmonics for wave in waves}
+    harmonics = sorted({nu for nu, _ in found})
+    mask = carried_modes(N, seeds, harmonics, even=model == "beta")
+    expected = {(nu, q) for nu, q in found if 0 < q < N}
+    assert {(harmonics[i], int(q) + 1) for i, q in zip(*mask.nonzero(), strict=True)} == expected
+
+
+@pytest.mark.parametrize("ends", ["fixed", "periodic"])
+@pytest.mark.parametrize("law", ["poly:1", "poly:0,1", "poly:0,1,1", "poly:0,0,0,1", "toda:1"])
+def test_a_mode_is_listed_at_the_first_order_that_reaches_it(law, ends):
+    """Orders without terms, where c_3 = 0, put it off."""
+    sets = reachable_modes(15, (2, 5), 8, potential=law, ends=ends)
+    assert excitation_sequence(15, (2, 5), 8, potential=law, ends=ends) == propagation.first_orders(sets)
+
+
+def test_new_sums_of_a_long_chain_come_from_new_ones_alone(monkeypatch):
+    folded = []
+    monkeypatch.setattr(propagation, "_folded", lambda total, turn: folded.append(total) or min(total % turn, -total % turn))
+    excitation_sequence(10**4, (3, 5), 500)
+    assert len(folded) < 100 * 500  # all sums anew would be 500 times as many as orders

@@ -3,24 +3,29 @@
 import ast
 import json
 import re
+from contextlib import redirect_stdout
+from functools import cache
+from io import StringIO
 from pathlib import Path
+from shlex import split
 
 import pytest
 
 import symfpu
+from symfpu import load
 from symfpu.cli.main import main
 from symfpu.cli.verbs import VERBS
-from symfpu.saved.results import load
-from tests.reports.test_records import FORMS, numbers
+from tests.cli.running import answer
+from tests.test_results import check_forms
 
 ROOT = Path(__file__).parents[2]
 ROWS = re.findall(r"^\| ([^|]*) \|", (ROOT / "docs" / "records.md").read_text(), re.MULTILINE)
 PAGE = {word for row in ROWS for word in re.findall(r"\w+", row)}
 CHAIN = ["-N", "4", "--alpha", "0.3"]
 TORUS = [*CHAIN, "--seeds", "1", "--energy", "0.001", "--order", "2"]
-RULE = ["-N", "6", "--seeds", "1,2", "--order", "2"]
+RULE = split("-N 6 --seeds 1,2 --order 2")
 TODA = ["--potential", "toda:1/2"]
-RING = ["-N", "8", "--beta", "0.3", "--ends", "periodic", "--seeds", "1", "--omega", "0.77", "--order", "2"]
+RING = split("-N 8 --beta 0.3 --ends periodic --seeds 1 --omega 0.77 --order 2")
 BREATHER = ["breather", *CHAIN, "--seed", "1", "--energy", "0.001"]
 MADE = {"PROOF": ["prove", *RULE, "--model", "beta", "-o"], "TORUS": ["solve", *TORUS, "-o"], "ORBIT": [*BREATHER, "-o"]}
 CASES = {
@@ -39,49 +44,39 @@ LONG = {
     "breather": BREATHER,
     "refine": ["refine", "TORUS"],
     "prove, another potential": ["prove", *RULE, *TODA],
-    "sweep": ["sweep", "--longest", "4", "--order", "2", "--model", "beta"],
+    "sweep": split("sweep --longest 4 --order 2 --model beta"),
     "solve, a ring": ["solve", *RING],
     "breather, multipliers": [*BREATHER, "--multipliers"],
     "family": ["family", *CHAIN, "--seeds", "1", "--to-energy", "0.002", "--from-energy", "0.001"],
     "actions": ["actions", "TORUS"],
     "stability": ["stability", "ORBIT"],
     "certify": ["certify", "ORBIT"],
-    "prove, all N": ["prove", "--all-N", "--model", "beta", "--seeds-number", "1", "--order", "2"],
-    "orbit": ["orbit", "TORUS", "--time", "100", "--samples", "10"],
+    "prove, all N": split("prove --all-N --model beta --seeds-number 1 --order 2"),
+    "orbit": split("orbit TORUS --time 100 --samples 10"),
     "orbit, a state": ["orbit", *CHAIN, "--packet", "1", "--energy", "0.1", "--time", "100", "--samples", "10"],
     "frequencies": ["frequencies", *CHAIN, "--packet", "1", "--energy", "0.1", "--time", "200", "--step", "0.1"],
     "frequencies, a map": ["frequencies", *CHAIN, "--energies", "0.01,0.1", "--time", "200", "--step", "0.1"],
-    "gali": ["gali", "TORUS", "--time", "1000", "--vectors", "3"],
-    "gali, estimate": ["gali", "TORUS", "--time", "1000", "--vectors", "3", "--estimate"],
-    "atlas": ["atlas", "--beta", "1", "--lengths", "4", "--packets", "low:1", "--order", "4", "--borders", "poles"],
+    "gali": split("gali TORUS --time 1000 --vectors 3"),
+    "gali, estimate": split("gali TORUS --time 1000 --vectors 3 --estimate"),
+    "atlas": split("atlas --beta 1 --lengths 4 --packets low:1 --order 4 --borders poles"),
     "reproduce": ["reproduce", "fig6", "-o", "out"],
 }
-EVERY = {name: pytest.param(words, id=name) for name, words in CASES.items()}
-EVERY |= {name: pytest.param(words, id=name, marks=pytest.mark.long) for name, words in LONG.items()}
+EVERY = [*CASES, *(pytest.param(name, marks=pytest.mark.long) for name in LONG)]
 LAWS = ({"alpha", "beta"}, {"model"}, {"potential"})
-OF_PARTS = {"figures"}  # each with a head of its own
 
 
-def printed(capsys, words):
-    """What a verb prints with --json, as a strict reader takes it."""
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """The file that stands for a word, made once; other words as they are."""
+    folder = tmp_path_factory.mktemp("made")
 
-    def refuse(word):
-        raise AssertionError(word)
-
-    assert main([*words, "--json"]) == 0
-    return json.loads(capsys.readouterr().out, parse_constant=refuse)
-
-
-@pytest.fixture
-def files(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-
+    @cache
     def path_of(word):
         if word not in MADE:
             return word
-        file = tmp_path / word
-        main([*MADE[word], str(file)])
-        return capsys.readouterr().out.split()[-1]
+        with redirect_stdout(StringIO()):
+            assert main([*MADE[word], str(folder / word)]) == 0
+        return str(next(folder.glob(f"{word}*")))
 
     return path_of
 
@@ -99,9 +94,16 @@ def verb_of(function):
     return named[0] if named else function.name
 
 
-@pytest.mark.parametrize("words", EVERY.values())
-def test_every_verb_has_the_same_keys_and_number_forms(words, files, capsys):
-    found = printed(capsys, [files(word) for word in words])
+KEPT = {"solve": "-o", "refine": "-o", "breather": "-o", "family": "--save", "orbit": "--save", "gali": "--save", "sweep": "--save"}
+OF_THE_RUN = {"seconds", "assessment", "verdict", "warnings"}  # clocks; what the verb judges or doubts besides
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_every_verb_has_the_same_keys_and_number_forms(name, made, capsys, tmp_path, monkeypatch):
+    """Of those that keep a result, also the keys and numbers of its record."""
+    words = [*map(made, (CASES | LONG)[name])]
+    monkeypatch.chdir(tmp_path)
+    found = answer(capsys, *words, *([KEPT[name], "kept.symfpu"] if name in KEPT else []), quiet=False)
     assert list(found)[:2] == ["kind", "symfpu_version"]
     assert found["symfpu_version"] == symfpu.__version__
     assert found["kind"] == words[0] or hasattr(symfpu, found["kind"])
@@ -113,41 +115,32 @@ def test_every_verb_has_the_same_keys_and_number_forms(words, files, capsys):
         assert isinstance(found["seeds"], list)
         for key in ("frequencies", "amplitudes", "actions"):
             assert list(found.get(key) or map(str, found["seeds"])) == list(map(str, found["seeds"]))
-    for key, form in FORMS.items():
-        values = found.get(key)
-        inside = values.values() if isinstance(values, dict) else [values] * (values is not None)
-        assert all(isinstance(value, form) for value in inside), key
-    assert all(float(f"{value:.15g}") == value for value in numbers(found))
+    check_forms(found)
     for part in found.get("figures", {}).values():
         assert list(part) == ["kind", "title", "remarks", "claims", "panels", "numbers"]
+    if name in KEPT:
+        bundle = load("kept.symfpu")
+        assert bundle.provenance["command"].startswith(f"symfpu {name} ")
+        kept = bundle.result.record()
+        assert {key: found[key] for key in kept if key not in OF_THE_RUN} == {key: kept[key] for key in kept if key not in OF_THE_RUN}
 
 
-KEPT = {"solve": "-o", "refine": "-o", "breather": "-o", "family": "--save", "orbit": "--save", "gali": "--save", "sweep": "--save"}
-OF_THE_RUN = {"seconds", "assessment", "verdict", "warnings"}  # clocks; what the verb judges or doubts besides
+@pytest.mark.parametrize("name", EVERY)
+def test_without_json_a_verb_prints_lines_for_a_reader(name, made, capsys, tmp_path, monkeypatch):
+    words = [*map(made, (CASES | LONG)[name])]
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 0
+    shown = capsys.readouterr().out
+    assert shown.strip()
+    with pytest.raises(json.JSONDecodeError):
+        json.loads(shown)
 
 
-@pytest.mark.parametrize("name", [name for name in EVERY if name in KEPT])
 @pytest.mark.long
-def test_a_verb_prints_the_record_of_what_it_keeps(name, files, capsys, tmp_path):
-    file = tmp_path / "kept.symfpu"
-    words = [files(word) for word in (CASES | LONG)[name]]
-    found = printed(capsys, [*words, KEPT[name], str(file)])
-    kept = load(file).result.record()
-    assert {key: found[key] for key in kept if key not in OF_THE_RUN} == {key: kept[key] for key in kept if key not in OF_THE_RUN}
-
-
-@pytest.mark.long
-def test_verify_says_what_prove_said(files, capsys):
-    proved = printed(capsys, ["prove", *RULE, "--model", "beta"])
-    verified = printed(capsys, ["verify", files("PROOF")])
+def test_verify_says_what_prove_said(made, capsys):
+    proved = answer(capsys, "prove", *RULE, "--model", "beta")
+    verified = answer(capsys, "verify", made("PROOF"))
     reason = proved.pop("reason")  # of the prover: the checker has its own route
     assert reason
     assert {key: verified[key] for key in proved} == proved
     assert verified["valid"] is True
-
-
-@pytest.mark.long
-def test_frequencies_of_a_term_are_by_seed(files, capsys):
-    found = printed(capsys, LONG["term, numbers"])
-    assert (found["frequencies"], found["digits"]) == ({"1": "0.77"}, 20)
-    assert printed(capsys, CASES["term"])["frequencies"] is None

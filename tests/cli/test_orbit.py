@@ -1,17 +1,13 @@
-"""The verb orbit: what it prints and writes, and what it refuses."""
+"""The verb orbit, and orbits and indices from a state of one's own: what they print, write and refuse."""
 
 import csv
-import json
+from shlex import split
 
 import numpy as np
 import pytest
 
-from symfpu.bundles.bundle import save
-from symfpu.chain.chain import Chain
-from symfpu.cli.main import main
-from symfpu.refinement.tori import refine
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu import Chain, integrate, lindstedt, packet_state, particle_state, random_state, refine, save, solve_amplitudes
+from tests.cli.running import answer, refusal, shown
 from tests.tolerances import ENERGY_SHORT_STEPS, ORBIT
 
 
@@ -25,16 +21,8 @@ def saved(torus, tmp_path_factory):
     return str(save(tmp_path_factory.mktemp("orbit") / "torus.symfpu", torus))
 
 
-def run(capsys, *argv):
-    code = main(list(argv))
-    captured = capsys.readouterr()
-    return code, captured.out, captured.err
-
-
 def test_json_says_how_far_the_orbit_stays_from_the_torus(capsys, saved, torus):
-    code, out, err = run(capsys, "orbit", saved, "--time", "1e3", "--json")
-    record = json.loads(out)
-    assert (code, err) == (0, "")
+    record = answer(capsys, "orbit", saved, "--time", "1e3")
     assert record["energy"] == repr(float(torus.energy()))
     assert (record["time"], record["step"], record["scheme"]) == (1000.0, 0.2, "kahan_li8")
     assert record["energy_error"] < ENERGY_SHORT_STEPS
@@ -48,26 +36,13 @@ def test_json_says_how_far_the_orbit_stays_from_the_torus(capsys, saved, torus):
 
 def test_a_series_that_is_cut_early_leaves_its_orbit(capsys, tmp_path):
     file = save(tmp_path / "torus", solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1,), ("0.393",), 2)))
-    code, out, _ = run(capsys, "orbit", str(file), "--time", "1000", "--json")
-    assert code == 0
-    assert 1e-4 < json.loads(out)["largest_deviation"] < 1
-
-
-def test_text_names_the_largest_modes_first(capsys, saved):
-    code, out, _ = run(capsys, "orbit", saved, "--time", "50", "--scheme", "aba864_modes", "--samples", "20")
-    lines = out.splitlines()
-    assert code == 0
-    assert lines[0].startswith("Orbit(N=8, alpha=0.3, T=50, aba864_modes, step 0.2, ")
-    assert lines[1].startswith("energy error ")
-    assert lines[2].startswith("off the torus ")
-    assert [line.split()[0] for line in lines[3:6]] == ["mode", "1", "2"]
+    assert 1e-4 < answer(capsys, "orbit", file, "--time", "1000")["largest_deviation"] < 1
 
 
 def test_samples_are_written_as_csv_and_npz(capsys, saved, tmp_path):
     table, arrays = tmp_path / "orbit.csv", tmp_path / "orbit.npz"
     for target in (table, arrays):
-        code, out, _ = run(capsys, "orbit", saved, "--time", "50", "--samples", "20", "-o", str(target))
-        assert code == 0
+        out = shown(capsys, "orbit", saved, "--time", "50", "--samples", "20", "-o", str(target))
         assert out.splitlines()[-1] == f"written: {target}"
     with table.open(newline="") as stream:
         header, *rows = csv.reader(stream)
@@ -81,37 +56,53 @@ def test_samples_are_written_as_csv_and_npz(capsys, saved, tmp_path):
 
 
 def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, saved, tmp_path):
-    options = ("orbit", saved, "--checkpoint", str(tmp_path / "run"), "--samples", "9", "--json")
-    first, second = (json.loads(run(capsys, *options, "--time", "50")[1]) for _ in range(2))
+    options = ("orbit", saved, "--checkpoint", str(tmp_path / "run"), "--samples", "9")
+    first, second = (answer(capsys, *options, "--time", "50") for _ in range(2))
     assert first["energy_error"] == second["energy_error"]
-    longer = json.loads(run(capsys, *options, "--time", "60")[1])
+    longer = answer(capsys, *options, "--time", "60")
     assert (longer["time"], longer["energy"]) == (60, first["energy"])
-    code, out, err = run(capsys, *options, "--time", "50")
-    assert (code, out) == (2, "")
+    err = refusal(capsys, *options, "--time", "50")
     assert "a checkpoint of the same orbit (steps is 300 in it, 250 here)" in err
 
 
-@pytest.mark.parametrize(
-    ("options", "code", "said"),
-    [
-        (("--time", "soon"), 2, "time = 'soon'"),
-        (("--time", "nan"), 2, "T = nan"),
-        (("--time", "10", "--step", "0"), 2, "step = 0.0"),
-        (("--time", "10", "--scheme", "euler"), 2, "scheme = 'euler'"),
-        (("--time", "10", "--samples", "few"), 2, "samples = 'few'"),
-        (("--time", "10", "-o", "orbit.txt"), 2, "ends in .csv or .npz"),
-        (("--time", "10", "--step", "2"), 1, "a step of 2 of kahan_li8 is unstable at time 0 in mode "),
-    ],
-)
-def test_bad_input_is_one_line(options, code, said, capsys, saved):
-    found, out, err = run(capsys, "orbit", saved, *options)
-    assert (found, out) == (code, "")
-    assert said in err
-    assert len(err.splitlines()) == 1
+CHAINS = {
+    "fixed": (Chain(4, alpha="0.3"), ["-N", "4", "--alpha", "0.3"]),
+    "ring": (Chain(4, potential="toda:1/2", ends="periodic"), split("-N 4 --potential toda:1/2 --ends periodic")),
+}
+PACKET = ["--packet", "1,2", "--energy", "0.1"]
 
 
-def test_a_file_without_a_torus_is_refused(capsys, tmp_path):
-    file = save(tmp_path / "series", lindstedt(Chain(8, beta="0.1"), (3,), ("1.12",), 2))
-    code, _, err = run(capsys, "orbit", str(file), "--time", "10")
-    assert code == 2
-    assert "a file with a torus or a breather in it" in err
+@pytest.fixture(params=["fixed", pytest.param("ring", marks=pytest.mark.long)])
+def case(request, tmp_path):
+    """A chain as typed, and the starts by name, each with its words and its state."""
+    chain, words = CHAINS[request.param]
+    n = chain.kind_of_ends.particles
+    x, p = np.linspace(0.1, 0.2, n), np.zeros(n)
+    file = tmp_path / "state.csv"
+    file.write_text("x,p\n" + "".join(f"{a!r},0\n" for a in x.tolist()))
+    starts = {
+        "state": (["--state", str(file)], particle_state(chain, x, p)),
+        "packet": (PACKET, packet_state(chain, (1, 2), "0.1")),
+        "random": (["--random", "3", "--energy", "0.1"], random_state(chain, "0.1", 3)),
+    }
+    return chain, words, starts
+
+
+def test_orbits_start_there(capsys, case):
+    chain, words, starts = case
+    for kind, (typed, state) in starts.items():
+        record = answer(capsys, "orbit", "--time", "10", *words, *typed)
+        orbit = integrate(chain, *state, 10, step=0.2, averages=True)
+        assert record["energy"] == repr(float(orbit.energies[0]))
+        assert record["average_spectrum"] == pytest.approx(orbit.averages[-1].tolist())
+        assert record["start"]["kind"] == kind
+        assert record["largest_deviation"] is record["torus_average_spectrum"] is None
+        assert record["N"] == 4
+
+
+@pytest.mark.long
+def test_alignment_indices_start_there(capsys, case):
+    _, words, starts = case
+    for kind, (typed, _) in starts.items():
+        record = answer(capsys, "gali", "--time", "100", "--samples", "64", *words, *typed, quiet=False)
+        assert (record["seeds"], record["start"]["kind"]) == (None, kind)

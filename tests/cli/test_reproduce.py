@@ -1,37 +1,20 @@
 """symfpu reproduce: report, pictures and data of every panel; long runs that are stopped and go on; bad arguments."""
 
 import csv
-import json
 from functools import partial
 
 import numpy as np
 import pytest
 
-from symfpu.cli.main import main
-from symfpu.dynamics.alignment import alignment_indices
-from symfpu.errors import SymfpuError
-from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
-from symfpu.localization.recurrence import NoRecurrence
+from symfpu import NoRecurrence, SymfpuError, alignment_indices, fpu_trajectory, packet_amplitudes
 from symfpu.paper import dimensions, fig2, fig3, targets
 from symfpu.paper.claims import VERDICTS, PaperFigure
 from symfpu.paper.starts import printed_row
+from tests.cli.running import run, shown, strict
 from tests.paper.cases import shorter_figure_9
 
 LONG = 1e3  # in place of 1e9
 RUNS = {"every": 0.0}  # a checkpoint at every look
-
-
-def run(capsys, *argv):
-    code = main(["reproduce", *argv])
-    captured = capsys.readouterr()
-    return code, captured.out, captured.err
-
-
-def strict(text):
-    def refuse(word):
-        raise AssertionError(word)
-
-    return json.loads(text, parse_constant=refuse)
 
 
 @pytest.fixture
@@ -49,8 +32,7 @@ def short(alone, monkeypatch):
 
 @pytest.mark.long
 def test_reproduce_writes_claims_pictures_and_data(short, capsys, tmp_path):
-    code, out, err = run(capsys, "section5", "fig6", "fig3", "-o", str(tmp_path))
-    assert (code, err) == (0, "")
+    out = shown(capsys, "reproduce", "section5", "fig6", "fig3", "-o", str(tmp_path))
     panels = ("fig3a", "fig3b", "fig6a", "fig6b", "fig6c")
     expected = {f"{panel}.{suffix}" for panel in panels for suffix in ("png", "pdf", "csv")}
     assert {path.name for path in tmp_path.iterdir()} == expected | {"report.md", "report.json"}
@@ -78,20 +60,12 @@ def cells(page, header):
 
 
 @pytest.mark.long
-def test_json_is_strict_and_alone_on_standard_output(capsys, tmp_path):
-    code, out, err = run(capsys, "section5", "-o", str(tmp_path), "--json")
-    assert (code, err) == (0, "")
-    assert strict(out) == strict((tmp_path / "report.json").read_text())
-    assert list(strict(out)["figures"]) == ["section5"]
-
-
-@pytest.mark.long
 def test_a_target_that_fails_costs_no_other(alone, monkeypatch, capsys, tmp_path):
     def lost(folder, progress, *, full=False):
         raise NoRecurrence(1e4, 0.9)
 
     monkeypatch.setitem(targets.TARGETS, "fig3", lost)
-    code, out, err = run(capsys, "fig3", "section5", "fig6", "-o", str(tmp_path))
+    code, out, err = run(capsys, "reproduce", "fig3", "section5", "fig6", "-o", str(tmp_path))
     assert code == 1
     assert "no figures of fig3 (NoRecurrence: no recurrence" in err.splitlines()[-1]
     assert "Fig. 6: orders of first excitation" in out
@@ -104,7 +78,7 @@ def test_one_target_alone_fails_with_its_own_error(monkeypatch, capsys, tmp_path
         raise NoRecurrence(1e4, 0.9)
 
     monkeypatch.setitem(targets.TARGETS, "fig3", lost)
-    code, out, err = run(capsys, "fig3", "-o", str(tmp_path), "--json")
+    code, out, err = run(capsys, "reproduce", "fig3", "-o", str(tmp_path), "--json")
     assert (code, out) == (1, "")
     assert err.startswith("symfpu: no recurrence")
     assert not list(tmp_path.iterdir())
@@ -132,7 +106,7 @@ def test_full_says_how_long_and_goes_on_where_it_was_stopped(full, monkeypatch, 
         return alignment_indices(*given, progress=hear, **options, **RUNS)
 
     monkeypatch.setattr(dimensions, "alignment_indices", partial(watched, 1 / 3))
-    code, out, err = run(capsys, "fig9", "--full", "-o", str(tmp_path))
+    code, out, err = run(capsys, "reproduce", "fig9", "--full", "-o", str(tmp_path))
     assert (code, out) == (130, "")
     assert "--full, about: fig9 0.0 h; stopped and started again, alignment indices go on from" in err
     assert str(tmp_path) in err
@@ -142,8 +116,7 @@ def test_full_says_how_long_and_goes_on_where_it_was_stopped(full, monkeypatch, 
     reached = max(fractions)
     fractions.clear()
     monkeypatch.setattr(dimensions, "alignment_indices", partial(watched, 2.0))
-    code, out, err = run(capsys, "fig9", "--full", "-o", str(tmp_path), "--json")
-    assert code == 0
+    out = shown(capsys, "reproduce", "fig9", "--full", "-o", str(tmp_path), "--json", quiet=False)
     assert list(strict(out)["figures"]) == ["fig9"]
     assert min(fractions) > 0.9 * reached > 0.3
     row = printed_row("Fig. 9")
@@ -161,35 +134,27 @@ def test_a_checkpoint_of_another_run_is_refused_by_name(tmp_path):
     assert file.read_bytes() == b"something else"
 
 
-@pytest.mark.parametrize(
-    ("argv", "named"),
-    [
-        (["fig3", "fig0"], "fig0"),
-        (["all", "nosuch"], "nosuch"),
-        (["fig3", "--full"], "fig1, fig2, fig9"),
-        (["section5", "fig6", "--full"], "leave out"),
-    ],
-)
-def test_bad_arguments_compute_nothing(monkeypatch, capsys, tmp_path, argv, named):
-    code, out, err = run(capsys, *argv, "-o", str(tmp_path / "new"))
-    assert (code, out, len(err.splitlines())) == (2, "", 1)
-    assert named in err
-    assert not (tmp_path / "new").exists()
-
-
 def test_targets_are_done_once_and_written_in_order_of_the_paper(alone, monkeypatch, capsys, tmp_path):
     done = []
     page = PaperFigure("fig0", "Page", (), ())
     for name in targets.TARGETS:
         monkeypatch.setitem(targets.TARGETS, name, lambda folder, progress, *, full=False, name=name: done.append((name, full)) or page)
-    assert run(capsys, "fig9", "table", "fig9", "-o", str(tmp_path))[0] == 0
+    assert run(capsys, "reproduce", "fig9", "table", "fig9", "-o", str(tmp_path))[0] == 0
     assert sorted(done) == [("fig9", False), ("table", False)]
     assert list(strict((tmp_path / "report.json").read_text())["figures"]) == ["table", "fig9"]
     done.clear()
     monkeypatch.setattr("symfpu.cli.reproduce.full_seconds_of", lambda chosen: dict.fromkeys(chosen, 1.0))
-    assert run(capsys, "all", "--full", "-o", str(tmp_path))[0] == 0
+    assert run(capsys, "reproduce", "all", "--full", "-o", str(tmp_path))[0] == 0
     assert sorted(done) == sorted((name, True) for name in targets.TARGETS)
     assert list(strict((tmp_path / "report.json").read_text())["figures"]) == list(targets.TARGETS)
+
+
+@pytest.mark.parametrize(("figure", "N", "vectors"), [("fig1", 16, 5), ("fig9", 32, 7)])
+def test_the_estimate_is_that_of_the_figure_s_own_chain(monkeypatch, figure, N, vectors):
+    asked = []
+    monkeypatch.setattr(dimensions, "seconds_needed", lambda chain, T, **options: asked.append((chain.N, options["vectors"])))
+    dimensions.full_seconds(figure)
+    assert asked == [(N, vectors)]
 
 
 def test_the_estimate_names_what_takes_long(monkeypatch, tmp_path):
@@ -199,8 +164,3 @@ def test_the_estimate_names_what_takes_long(monkeypatch, tmp_path):
     )
     assert targets.full_estimate(targets.full_seconds_of(["table"]), tmp_path) == "--full, about: table 25 s"
     assert set(targets.LONG_TARGETS) == {"table", *dimensions.VECTORS}
-
-
-def test_the_estimate_is_that_of_the_figure_s_own_chain():
-    """Seven vectors cost more than five, N = 32 more than N = 16: times in the ratio of the work, to a factor of two."""
-    assert 1.0 < dimensions.full_seconds("fig2") / dimensions.full_seconds("fig1") < 4.0

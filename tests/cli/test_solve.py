@@ -1,29 +1,19 @@
-"""symfpu solve from a wish: an energy, shares of it, amplitudes; what is said of the shares; refusals."""
+"""symfpu solve from a wish: an energy, shares of it, amplitudes; what is said of the shares; any potential."""
 
-import json
+from shlex import split
 
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.cli.main import main
-from symfpu.tori.at_energy import torus_at_energy
-from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu import Chain, lindstedt, solve_amplitudes, torus_at_amplitudes, torus_at_energy
+from tests.cli.running import answer, run, shown
 from tests.tolerances import FIXED_ENERGY
 
 CHAIN = Chain(4, alpha="0.3")
-WORDS = ["solve", "-N", "4", "--alpha", "0.3", "--seeds", "2,1", "--order", "2"]
-
-
-def run(capsys, *argv):
-    code = main([*WORDS, *argv])
-    captured = capsys.readouterr()
-    return code, captured.out, captured.err
+WORDS = split("solve -N 4 --alpha 0.3 --seeds 2,1 --order 2")
 
 
 def record(capsys, *argv):
-    code, out, _ = run(capsys, *argv, "--json")
-    assert code == 0
-    return json.loads(out)
+    return answer(capsys, *WORDS, *argv)
 
 
 def by_seed(values):
@@ -55,29 +45,25 @@ def test_amplitudes_are_by_seed_as_the_seeds_are_typed(capsys):
 
 
 def test_the_text_says_how_the_energy_is_shared(capsys):
-    _, out, _ = run(capsys, "--energy", "0.01")
+    out = shown(capsys, *WORDS, "--energy", "0.01", quiet=False)
     assert "energy shared      equal time averages of E_q of the seeds; --shares S,S,... for others" in out.splitlines()
-    _, out, _ = run(capsys, "--energy", "0.01", "--shares", "3,1")
+    out = shown(capsys, *WORDS, "--energy", "0.01", "--shares", "3,1", quiet=False)
     assert "energy shared      time averages of E_q of the seeds as 1: 1, 2: 3" in out.splitlines()
-    _, out, _ = run(capsys, "--amplitudes", "0.2,0.1")
+    out = shown(capsys, *WORDS, "--amplitudes", "0.2,0.1", quiet=False)
     assert "energy shared" not in out
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        ([], "exactly one of --omega, --energy and --amplitudes; give one of them"),
-        (["--energy", "1", "--omega", "1,2"], "leave the others out"),
-        (["--omega", "0.7,1.4", "--shares", "1,1"], "shares = '1,1'"),
-        (["--amplitudes", "0.1,0.1", "--harmonic"], "harmonic = True"),
-        (["--energy", "1", "--shares", "1"], "shares = '1': allowed is a number for each of the seeds (2, 1)"),
-        (["--energy", "-1"], "energy = '-1'"),
-        (["--energy", "1", "--ends", "periodic"], "give --omega and -o FILE, then symfpu refine FILE --energy E"),
-        (["--amplitudes", "1,1", "--ends", "periodic"], "give --omega and -o FILE, then symfpu refine FILE --amplitudes A,A,..."),
-        (["--omega", "1,2", "--digits", "30", "--ends", "periodic"], "digits = 30: allowed is none with --ends periodic"),
-    ],
-)
-def test_refusals(capsys, words, said):
-    code, out, err = run(capsys, *words)
-    assert (code, out) == (2, "")
-    assert said in err
+BREATHER = split("solve -N 8 --seeds 1 --omega 0.392 --order 4")
+
+
+def test_solve_with_a_potential_is_the_series_of_that_chain(capsys):
+    found = answer(capsys, *BREATHER, "--potential", "lj:12,6", quiet=False)
+    torus = solve_amplitudes(lindstedt(Chain(8, potential="lj:12,6"), (1,), ("0.392",), 4))
+    assert found["potential"] == "lennard_jones:12,6"
+    assert "alpha" not in found
+    assert found["amplitudes"] == {"1": repr(float(torus.amplitudes[1]))}
+
+
+def test_a_polynomial_of_fpu_is_the_chain_of_its_couplings(capsys):
+    by_potential = run(capsys, *BREATHER, "--potential", "poly:0.33,1/5", "--json")
+    assert by_potential == run(capsys, *BREATHER, "--alpha", "0.33", "--beta", "1/5", "--json")

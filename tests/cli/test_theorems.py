@@ -81,6 +81,7 @@ def test_every_certificate_is_a_theorem_without_any_package(certificates, said):
         assert sentence in said[name][0], said[name][0]
 
 
+@pytest.mark.long
 def test_the_verb_says_the_same(certificates, said, capsys):
     for name, path in certificates.items():
         assert main(["verify", str(path)]) == 0

@@ -1,8 +1,9 @@
-"""Programs that exported code needs: their path, or a test that is skipped with the package to install; and strict C."""
+"""Programs that exported code needs: their path, or a test that is skipped with the package to install; strict compilers."""
 
 import os
 import shutil
 import subprocess
+import sys
 
 import pytest
 
@@ -10,6 +11,7 @@ COMMANDS = {"gcc": ("gcc", "cc", "clang"), "gfortran": ("gfortran",), "octave-cl
 PACKAGES = {"gcc": "gcc libc6-dev", "gfortran": "gfortran", "octave-cli": "octave"}
 REQUIRED = "SYMFPU_REQUIRE_COMPILERS"  # in the environment: a missing program is a failure
 STRICT_C = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-O2")
+STRICT_FORTRAN = ("-std=f2008", "-Wall", "-Werror", "-O2")
 
 
 def program(name):
@@ -30,3 +32,25 @@ def compile_c(folder, sources, *options, output="a.out"):
     run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert (run.returncode, run.stderr) == (0, "")
     return folder / output
+
+
+def c_self_test(folder, text, *options, name="sample"):
+    """The run of the test that stands in a file of C; the file is strict."""
+    return subprocess.run(
+        [compile_c(folder, {f"{name}.c": text}, f"-D{name}_SELF_TEST", *options)], capture_output=True, text=True, check=False
+    )
+
+
+def self_test(path, folder):
+    """The run of a file that tests itself, of any language, by the ending of its name."""
+    if path.suffix == ".py":
+        command = [sys.executable, "-I", str(path)]
+    elif path.suffix == ".m":
+        command = [program("octave-cli"), "--norc", "--path", str(path.parent), "--eval", f"{path.stem}('self_test');"]
+    else:
+        c = path.suffix == ".c"
+        flags = [*STRICT_C, f"-D{path.stem}_SELF_TEST"] if c else [*STRICT_FORTRAN, f"-D{path.stem.upper()}_SELF_TEST"]
+        compiler = program("gcc" if c else "gfortran")
+        subprocess.run([compiler, *flags, str(path), "-o", "self_test", "-lm"], check=True, cwd=folder)
+        command = ["./self_test"]
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)

@@ -6,11 +6,9 @@ from functools import cache
 import mpmath
 import numpy as np
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain, FourierTorus, QTorus, lindstedt
 from symfpu.codegen.series_program import series_facts, series_program
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.quasiperiodic import FourierTorus
-from symfpu.tori.torus import QTorus
+from symfpu.codegen.straight_line import STRAIGHT_LINE
 from tests.tolerances import OF_LARGEST, OF_TAIL
 
 DIGITS = 40
@@ -61,10 +59,14 @@ def universal(case):
     return lindstedt(chain, seeds, order=max(order, frequency_order))
 
 
-def program_of(series, case, name="sample"):
-    """What the languages are given; series_program.STRAIGHT_LINE decides its form."""
+# operations up to which a numeric series becomes statements
+FORMS = {"statements": 10**9, "tables": 0, "default": STRAIGHT_LINE}
+
+
+def program_of(series, case, name="sample", form="default"):
+    """What the languages are given."""
     orders = {"order": case[3], "frequency_order": case[4]}
-    return series_program(series, name, series_facts(series, **orders), **orders)
+    return series_program(series, name, series_facts(series, **orders), **orders, straight_line=FORMS[form])
 
 
 def drawn(case, seed=3):
@@ -95,7 +97,7 @@ def _expected_orbit(case, amplitudes, phases, frequencies, times):
     omega = tuple(map(Fraction, frequencies))
     angles = dict(zip(torus.seeds, phases, strict=True))
     moved = FourierTorus(torus.chain, torus.seeds, omega, torus.harmonics, torus.cosines, angles, DIGITS)
-    return moved.positions(times), moved.momenta(times)
+    return moved.Q(times), moved.P(times)
 
 
 @cache

@@ -1,6 +1,5 @@
 """The potential of a bond in source code: as good as doubles at any stretch, in every language, and FPU chains as they were."""
 
-import subprocess
 from fractions import Fraction
 
 import mpmath
@@ -8,12 +7,9 @@ import numpy as np
 import pytest
 import sympy
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain, FourierTorus, compile_evaluator, export
 from symfpu.codegen.bond_potential import HIGHEST_POWER, REMAINDER, STRETCH, bond_potential
-from symfpu.codegen.evaluator import compile_evaluator
-from symfpu.codegen.export import export
-from symfpu.tori.quasiperiodic import FourierTorus
-from tests.codegen.compilers import STRICT_C, program
+from tests.codegen.compilers import program, self_test
 from tests.tolerances import BOND_OF_FORTY_FIVE, OF_LARGEST
 
 GROWING = ["toda:1/2", "toda:-100", "toda:1e-3", "lj:12,6", "lj:13/2,1/3", "morse:2"]
@@ -117,12 +113,6 @@ def test_energies_of_python_files_are_those_of_the_chain(typed, size, tmp_path):
 @pytest.mark.parametrize("language", ["c", "fortran", "octave"])
 @pytest.mark.parametrize("typed", LARGE)
 def test_files_of_other_languages_pass_their_own_test(typed, language, size, tmp_path):
-    file = export(moving(typed, size * LARGE[typed]), language, tmp_path / "sample")
-    if language == "octave":
-        command = [program("octave-cli"), "--norc", "--path", str(tmp_path), "--eval", "sample('self_test');"]
-    else:
-        flags = [*STRICT_C, "-Dsample_SELF_TEST"] if language == "c" else ["-std=f2008", "-Wall", "-Werror", "-DSAMPLE_SELF_TEST"]
-        compiler = program("gcc" if language == "c" else "gfortran")
-        subprocess.run([compiler, *flags, str(file), "-o", "self_test", "-lm"], check=True, cwd=tmp_path)
-        command = ["./self_test"]
-    assert "largest deviation" in subprocess.run(command, check=True, cwd=tmp_path, capture_output=True, text=True).stdout
+    run = self_test(export(moving(typed, size * LARGE[typed]), language, tmp_path / "sample"), tmp_path)
+    assert run.returncode == 0, run.stdout + run.stderr
+    assert "largest deviation" in run.stdout

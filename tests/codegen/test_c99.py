@@ -9,14 +9,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain, FourierTorus, QTorus, lindstedt
 from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.quasiperiodic import FourierTorus
-from symfpu.tori.torus import QTorus
-from tests.codegen.compilers import compile_c
-from tests.tolerances import OF_LARGEST, OF_TAIL
+from tests.codegen.compilers import c_self_test, compile_c
+from tests.codegen.series_cases import OF_LARGEST, assert_close  # noqa: F401 (for other languages, too)
+from tests.tolerances import OF_TAIL
 
 DIGITS = 40
 
@@ -71,16 +69,8 @@ def call(library, name, t, phases, shape):
     return values
 
 
-def assert_close(values, expected):
-    """Of the largest value, and of every mode's own largest."""
-    error = np.abs(values - expected).astype(float)
-    scale = np.abs(expected).astype(float)
-    assert error.max() <= OF_LARGEST * scale.max()
-    assert (error.max(axis=0) <= OF_TAIL * scale.max(axis=0)).all()
-
-
 @pytest.mark.long
-@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] * n.endswith(("four seeds", "five seeds"))) for n in CASES])
+@pytest.mark.parametrize("name", CASES)
 def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
     torus = case(name)
     draw = np.random.default_rng(5)
@@ -89,7 +79,7 @@ def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
     for phases in (None, angles(draw, torus.seeds)):
         exact = torus if phases is None else replace(torus, phases=phases)
         given = None if phases is None else list(phases.values())
-        Q, P = exact.positions(t), exact.momenta(t)
+        Q, P = exact.Q(t), exact.P(t)
         assert_close(call(library, "sample_positions", t, given, (19, modes)), Q)
         assert_close(call(library, "sample_momenta", t, given, (19, modes)), P)
         assert_close(call(library, "sample_harmonic_energies", t, given, (19, modes)), exact.harmonic_energies(t))
@@ -99,8 +89,7 @@ def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
 @pytest.mark.long
 @pytest.mark.parametrize("name", CASES)
 def test_self_test_of_the_file(name, tmp_path):
-    binary = compile_c(tmp_path, {"sample.c": C.torus(program(case(name)))}, "-Dsample_SELF_TEST", "-O0")
-    run = subprocess.run([binary], capture_output=True, text=True, check=False)
+    run = c_self_test(tmp_path, C.torus(program(case(name))), "-O0")
     assert run.returncode == 0, run.stdout
     assert "at most 1e-13" in run.stdout
 
@@ -113,7 +102,7 @@ def test_self_test_sees_a_changed_coefficient(tmp_path):
     at = source.index("coefficients_")
     assert repr(float(largest)) in source[at:]
     source = source[:at] + source[at:].replace(repr(float(largest)), repr(float(largest) * (1 + 1e-11)))
-    run = subprocess.run([compile_c(tmp_path, {"a.c": source}, "-Dsample_SELF_TEST")], capture_output=True, text=True, check=False)
+    run = c_self_test(tmp_path, source)
     assert run.returncode == 1
     assert "ABOVE 1e-13" in run.stdout
 
@@ -138,29 +127,11 @@ def test_two_files_in_one_program(tmp_path):
     first, second = case("alpha, one seed"), case("one mode")
     sources = {"first.c": C.torus(program(first, "first")), "second.c": C.torus(program(second, "second")), "main.c": MAIN}
     run = subprocess.run([compile_c(tmp_path, sources)], capture_output=True, text=True, check=True)
-    expected = [first.positions(2.5)[0], first.momenta(2.5)[6], second.positions(2.5)[0], second.momenta(2.5)[0]]
+    expected = [first.Q(2.5)[0], first.P(2.5)[6], second.Q(2.5)[0], second.P(2.5)[0]]
     assert np.array(run.stdout.split(), dtype=float) == pytest.approx(np.array(expected, dtype=float), rel=OF_TAIL)
-
-
-@pytest.mark.parametrize("name", ["mixed, three seeds", "one mode"])
-def test_same_bytes_twice_in_short_lines(name):
-    source = C.torus(program(case(name)))
-    assert source == C.torus(program(case(name)))
-    assert max(map(len, source.splitlines())) < 120
-    assert source.isascii()
-
-
-def test_facts_cannot_leave_their_comment(tmp_path):
-    torus = case("one mode")
-    facts = {"command": "export */ #error here /* ??/ \\", "title": "x" * 300}
-    source = C.torus(torus_program(torus, "sample", facts))
-    compile_c(tmp_path, {"sample.c": source}, "-c", output="sample.o")
-    assert "#error here" in source
-    assert "hash of the coefficients" in source
 
 
 def test_a_torus_at_rest(tmp_path):
     chain, seeds = Chain(5, alpha=1), (1, 2)
     rest = FourierTorus(chain, seeds, case("order 0").frequencies, np.zeros((1, 2), dtype=int), np.zeros((1, 4)), {1: 0.0, 2: 0.0})
-    binary = compile_c(tmp_path, {"sample.c": C.torus(program(rest))}, "-Dsample_SELF_TEST")
-    assert subprocess.run([binary], capture_output=True, check=False).returncode == 0
+    assert c_self_test(tmp_path, C.torus(program(rest))).returncode == 0

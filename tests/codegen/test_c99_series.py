@@ -11,30 +11,13 @@ import numpy as np
 import pytest
 
 from symfpu.codegen.languages.c import C
-from tests.codegen.compilers import compile_c
-from tests.codegen.series_cases import (
-    CASES,
-    OF_TAIL,
-    UNIVERSAL,
-    assert_close,
-    assert_frequencies,
-    drawn,
-    expected_frequencies,
-    expected_orbit,
-    numeric,
-    program_of,
-    universal,
-)
+from tests.codegen import series_cases
+from tests.codegen.compilers import c_self_test, compile_c
+from tests.codegen.series_cases import CASES, OF_TAIL, UNIVERSAL, assert_close, drawn, expected_orbit, numeric, program_of, universal
 
-FORMS = {"tables": 0, "statements": 10**9}
 TOO_SLOW_AS_STATEMENTS = {"high order", "beta, four seeds", "alpha, five seeds"}  # seconds of SymPy each
-SLOW_AS_STATEMENTS = {"alpha, two seeds", "mixed, three seeds"}
 
-NUMERIC = [
-    *(("tables", name) for name in CASES),
-    *(("statements", name) for name in CASES if name not in TOO_SLOW_AS_STATEMENTS | SLOW_AS_STATEMENTS),
-    *(pytest.param("statements", name, marks=pytest.mark.long) for name in sorted(SLOW_AS_STATEMENTS)),
-]
+NUMERIC = [*(("tables", name) for name in CASES), *(("statements", name) for name in CASES if name not in TOO_SLOW_AS_STATEMENTS)]
 EVERY = [*NUMERIC, *(("universal", name) for name in UNIVERSAL)]
 FEW = [("tables", "wrapped modes"), ("statements", "wrapped modes"), ("universal", "mixed, one mode")]
 
@@ -47,9 +30,7 @@ def made(form, name, called="sample"):
     """The program of a case in this form."""
     if form == "universal":
         return program_of(universal(UNIVERSAL[name]), UNIVERSAL[name], called)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", FORMS[form])
-        program = program_of(numeric(CASES[name]), CASES[name], called)
+    program = program_of(numeric(CASES[name]), CASES[name], called, form)
     assert (program.tables is None) == (form == "statements")
     return program
 
@@ -111,7 +92,7 @@ def test_values_are_those_of_the_series_at_forty_digits(form, name, shared):
     exact_Q, exact_P = expected_orbit(case, amplitudes, phases, frequencies, times)
     assert_close(Q, exact_Q)
     assert_close(P, exact_P)
-    assert_frequencies(*corrected(library, form, case, amplitudes, divisors), case, amplitudes)
+    series_cases.assert_frequencies(*corrected(library, form, case, amplitudes, divisors), case, amplitudes)
 
 
 @pytest.mark.parametrize(("form", "name"), FEW)
@@ -132,7 +113,7 @@ def test_frequencies_are_the_corrected_ones_by_default(form, name, shared):
     library = shared(form, name)
     amplitudes, phases, _, _ = drawn(case)
     times = [0.0, 0.5, -3.0]
-    omega = np.array(expected_frequencies(case, amplitudes)[0], dtype=float)
+    omega = np.array(series_cases.expected_frequencies(case, amplitudes)[0], dtype=float)
     exact_Q, exact_P = expected_orbit(case, amplitudes, phases, omega, times)
     Q, P = orbit(library, case, times, amplitudes, phases, None)
     assert_close(Q, exact_Q)
@@ -149,8 +130,7 @@ def test_divisors_need_frequencies(shared):
 @pytest.mark.long
 @pytest.mark.parametrize(("form", "name"), EVERY)
 def test_self_test_of_the_file(form, name, tmp_path):
-    binary = compile_c(tmp_path, {"sample.c": source_of(form, name)}, "-Dsample_SELF_TEST", "-O0")
-    run = subprocess.run([binary], capture_output=True, text=True, check=False)
+    run = c_self_test(tmp_path, source_of(form, name), "-O0")
     assert run.returncode == 0, run.stdout
     assert "at most 1e-13" in run.stdout
 
@@ -163,7 +143,7 @@ def test_self_test_sees_a_changed_coefficient(form, after, tmp_path):
     at = source.index(after) + len(after)
     first = re.compile(r"\d\.\d+(e-\d+)?").search(source, at)
     broken = source[: first.start()] + repr(float(first.group()) * (1 + 1e-9)) + source[first.end() :]
-    run = subprocess.run([compile_c(tmp_path, {"a.c": broken}, "-Dsample_SELF_TEST")], capture_output=True, text=True, check=False)
+    run = c_self_test(tmp_path, broken)
     assert run.returncode == 1
     assert "ABOVE 1e-13" in run.stdout
 

@@ -22,10 +22,3 @@ def test_a_required_program_that_is_missing_is_a_failure(nothing_installed, monk
     monkeypatch.setenv(REQUIRED, "1")
     with pytest.raises(pytest.fail.Exception, match="gfortran is not installed"):
         program("gfortran")
-
-
-def test_any_command_of_a_program_will_do(nothing_installed, monkeypatch, tmp_path):
-    other = tmp_path / "clang"
-    other.write_text("#!/bin/sh\n")
-    other.chmod(0o755)
-    assert program("gcc") == str(other)

@@ -1,14 +1,19 @@
 """The loader: the same values and shapes as the torus, whichever backend, and no backend that was not asked for."""
 
+import pickle
+import resource
+import signal
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from symfpu.codegen.evaluator import compile_evaluator, find_compiler
-from symfpu.errors import InputError, SymfpuError
+from symfpu import Chain, InputError, SymfpuError, compile_evaluator, lindstedt, refine, solve_amplitudes
+from symfpu.codegen import evaluator as module
+from symfpu.codegen.evaluator import CompiledFunctions, find_compiler
 from tests.codegen.compilers import program
 from tests.codegen.test_c99 import OF_LARGEST, angles, assert_close, case, random_times
+from tests.results import COPIES
 
 LARGEST_TIME = 100  # NumPy rounds omega t: half a last place of it is 1e-14
 
@@ -16,6 +21,13 @@ LARGEST_TIME = 100  # NumPy rounds omega t: half a last place of it is 1e-14
 @pytest.fixture(scope="module")
 def torus():
     return case("mixed, three seeds")
+
+
+@pytest.fixture(scope="module")
+def refined():
+    """By Newton's method: no series."""
+    series = lindstedt(Chain(8, alpha="1/3", beta="0.2"), (1, 3), ("0.3904", "1.1118"), 4)
+    return refine(solve_amplitudes(series, phases={1: 0.4, 3: -1.3}), tolerance=1e-9)
 
 
 @pytest.fixture
@@ -26,14 +38,17 @@ def backend(request):
     return request.param
 
 
+@pytest.mark.parametrize("solution", ["torus", "refined"])
 @pytest.mark.parametrize("backend", ["c", "numpy"], indirect=True)
-def test_values_are_those_of_the_torus(torus, backend):
+def test_values_are_those_of_the_torus(solution, backend, request):
+    torus = request.getfixturevalue(solution)
     evaluator, draw = compile_evaluator(torus, backend=backend), np.random.default_rng(3)
-    t = random_times(draw, 21) % LARGEST_TIME
+    t = random_times(draw, 5) % LARGEST_TIME
     other = angles(draw, torus.seeds)
-    for phases, exact in ((None, torus), (other, replace(torus, phases=other)), (list(other.values()), replace(torus, phases=other))):
-        assert_close(evaluator.positions(t, phases), exact.positions(t))
-        assert_close(evaluator.momenta(t, phases), exact.momenta(t))
+    assert np.array_equal(evaluator.Q(t, other), evaluator.Q(t, list(other.values())))
+    for phases, exact in ((None, torus), (other, replace(torus, phases=other))):
+        assert_close(evaluator.Q(t, phases), exact.Q(t))
+        assert_close(evaluator.P(t, phases), exact.P(t))
         assert_close(evaluator.harmonic_energies(t, phases=phases), exact.harmonic_energies(t))
         assert_close(evaluator.energy(t, phases)[:, None], exact.energy(t)[:, None])
 
@@ -41,7 +56,7 @@ def test_values_are_those_of_the_torus(torus, backend):
 @pytest.mark.parametrize("backend", ["c", "numpy"], indirect=True)
 def test_shapes_follow_the_times(torus, backend):
     evaluator = compile_evaluator(torus, backend=backend)
-    for along in (evaluator.positions, evaluator.momenta, evaluator.harmonic_energies):
+    for along in (evaluator.Q, evaluator.P, evaluator.harmonic_energies):
         assert along(1.0).shape == (7,)
         assert along([0.0, 1.0, 2.0]).shape == (3, 7)
         assert along([]).shape == (0, 7)
@@ -54,9 +69,9 @@ def test_shapes_follow_the_times(torus, backend):
 @pytest.mark.parametrize("backend", ["c", "numpy"], indirect=True)
 def test_a_phase_left_out_is_that_of_the_torus(torus, backend):
     evaluator = compile_evaluator(torus, backend=backend)
-    moved = evaluator.positions(3.0, {2: 0.5})
-    assert moved == pytest.approx(evaluator.positions(3.0, torus.phases | {2: 0.5}), rel=OF_LARGEST)
-    assert np.abs(moved - evaluator.positions(3.0)).max() > 0.01
+    moved = evaluator.Q(3.0, {2: 0.5})
+    assert moved == pytest.approx(evaluator.Q(3.0, torus.phases | {2: 0.5}), rel=OF_LARGEST)
+    assert np.abs(moved - evaluator.Q(3.0)).max() > 0.01
 
 
 @pytest.mark.parametrize("backend", ["c", "numpy"], indirect=True)
@@ -74,7 +89,7 @@ def test_a_phase_left_out_is_that_of_the_torus(torus, backend):
 )
 def test_bad_arguments_are_refused(torus, backend, argument, t, phases):
     with pytest.raises(InputError, match=rf"^{argument} = "):
-        compile_evaluator(torus, backend=backend).positions(t, phases)
+        compile_evaluator(torus, backend=backend).Q(t, phases)
 
 
 def test_unknown_backend(torus):
@@ -90,6 +105,19 @@ def test_a_compiler_that_fails_says_why(torus, monkeypatch, tmp_path):
     for backend in ("c", None):
         with pytest.raises(SymfpuError, match=r"failed: no such target; set CC"):
             compile_evaluator(torus, backend=backend)
+
+
+def test_a_full_disk_is_told_with_the_file_that_finds_no_room(torus, monkeypatch):
+    """The limit of the size of a file, which the system tells as it tells a full disk."""
+    monkeypatch.setenv("CC", "true")
+    usual, handler = resource.getrlimit(resource.RLIMIT_FSIZE), signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, usual[1]))
+    try:
+        with pytest.raises(SymfpuError, match=r"/symfpu-.*\.c: File too large; make room there"):
+            compile_evaluator(torus, backend="c")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+        signal.signal(signal.SIGXFSZ, handler)
 
 
 def test_a_compiler_that_is_not_there(torus, monkeypatch):
@@ -110,3 +138,21 @@ def test_without_a_compiler_numpy_is_the_default_and_c_is_refused(torus, monkeyp
 def test_with_a_compiler_c_is_the_default(torus):
     program("gcc")
     assert compile_evaluator(torus).backend == "c"
+
+
+@pytest.mark.parametrize("way", COPIES)
+def test_a_compiled_evaluator_comes_back_and_answers_the_same(way):
+    program("gcc")
+    evaluator = compile_evaluator(case("alpha, one seed", digits=None), backend="c")
+    returned = COPIES[way](evaluator)
+    t = [0.0, 1.7, 100.0]
+    assert repr(returned) == repr(evaluator)
+    assert np.array_equal(returned.Q(t, {1: 0.5}), evaluator.Q(t, {1: 0.5}))
+    assert np.array_equal(returned.energy(), evaluator.energy())
+
+
+def test_an_evaluator_that_arrives_where_no_compiler_is_says_so(monkeypatch):
+    sent = pickle.dumps(CompiledFunctions("int nothing;\n", 7, None))
+    monkeypatch.setattr(module, "find_compiler", lambda: None)
+    with pytest.raises(SymfpuError, match="no C compiler"):
+        pickle.loads(sent)

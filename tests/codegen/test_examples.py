@@ -12,8 +12,8 @@ import mpmath
 import numpy as np
 import pytest
 
+from symfpu import FourierTorus
 from symfpu.codegen.gallery import GALLERY
-from symfpu.tori.quasiperiodic import FourierTorus
 from tests.codegen.compilers import program
 from tests.tolerances import HUNDRED_ROUNDINGS, TEN_ROUNDINGS
 
@@ -34,7 +34,7 @@ def torus():
 
 def of_torus(torus):
     moved = replace(torus, phases={1: 0.5, 2: -1.0})
-    return [moved.positions(100.0)[0], moved.momenta(100.0)[0]]
+    return [moved.Q(100.0)[0], moved.P(100.0)[0]]
 
 
 def of_series(torus):
@@ -45,7 +45,7 @@ def of_series(torus):
     free = replace(torus, amplitudes={1: A[0], 2: A[1]}, order=orders["order"])
     exact = tuple(Fraction(float(w)) for w in omega)
     moved = FourierTorus(torus.chain, torus.seeds, exact, free.harmonics, free.cosines, {1: 0.5, 2: -1.0}, torus.digits)
-    return [moved.positions(100.0)[0], omega[1], slopes.sum(axis=0)[0, 1] * 2 * A[1]]
+    return [moved.Q(100.0)[0], omega[1], slopes.sum(axis=0)[0, 1] * 2 * A[1]]
 
 
 @pytest.mark.long

@@ -1,19 +1,10 @@
 """Export: languages, names, files that are there, and the command line."""
 
-import random
-
 import pytest
 
-from symfpu.bundles.bundle import save
-from symfpu.chain.chain import Chain
+from symfpu import Chain, InputError, compile_evaluator, export, lindstedt, save, solve_amplitudes
 from symfpu.cli.main import main
-from symfpu.codegen.evaluator import compile_evaluator
-from symfpu.codegen.export import LANGUAGES, export
-from symfpu.errors import InputError
-from symfpu.proofs.certificates import random_point
-from symfpu.series.lindstedt import lindstedt
-from symfpu.series.residues import residue_series
-from symfpu.tori.amplitudes import solve_amplitudes
+from tests.bundles.test_bundle import SERIES
 
 
 @pytest.fixture(scope="module")
@@ -24,31 +15,6 @@ def series():
 @pytest.fixture(scope="module")
 def torus(series):
     return solve_amplitudes(series)
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_every_language_writes_a_file_that_says_what_it_is(torus, language, tmp_path):
-    path = export(torus, language, tmp_path / "breather")
-    assert path.suffix == f".{LANGUAGES[language].extension}"
-    text = path.read_text()
-    for fact in ("Chain(N=8, alpha=0.3)", "0.3905", "coordinates 4", "breather", "symfpu.export", "hash"):
-        assert fact in text
-    assert text.isascii()
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_a_series_says_its_orders(series, language, tmp_path):
-    text = export(series, language, tmp_path / "free", order=3, frequency_order=2).read_text()
-    for fact in (
-        "Chain(N=8, alpha=0.3)",
-        "0.3905",
-        "frequencies 2, coordinates 3",
-        "symfpu.export(series",
-        "order=3",
-        "hash of the series",
-    ):
-        assert fact in text
-    assert text.isascii()
 
 
 def test_an_existing_file_is_kept_unless_forced(torus, tmp_path):
@@ -79,7 +45,7 @@ def test_what_cannot_be_exported_says_so(series, torus, tmp_path):
     with pytest.raises(InputError, match=r"^order = 2: allowed is none for a torus"):
         export(torus, "c", tmp_path / "x", order=2)
     with pytest.raises(InputError, match="residues"):
-        export(residue_series(Chain(8, "0.3"), (1,), random_point(8, 1, 3, random.Random(1)), 2), "c", tmp_path / "x")
+        export(SERIES["residue"](), "c", tmp_path / "x")
     with pytest.raises(InputError, match="file name"):
         export(torus, "fortran", tmp_path / "orbit")
     assert not list(tmp_path.iterdir())

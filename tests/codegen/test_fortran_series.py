@@ -6,39 +6,24 @@ import subprocess
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain, InputError, lindstedt
 from symfpu.codegen.languages.fortran import FORTRAN
 from symfpu.codegen.series_program import series_facts, series_program
-from symfpu.errors import InputError
-from symfpu.series.lindstedt import lindstedt
-from tests.codegen import test_fortran
+from tests.codegen import series_cases, test_fortran
 from tests.codegen.compilers import program
-from tests.codegen.series_cases import (
-    CASES,
-    OF_LARGEST,
-    UNIVERSAL,
-    assert_close,
-    assert_frequencies,
-    drawn,
-    expected_frequencies,
-    expected_orbit,
-    numeric,
-    program_of,
-    universal,
-)
+from tests.codegen.series_cases import CASES, OF_LARGEST, UNIVERSAL, assert_close, expected_orbit, numeric, program_of, universal
 
 pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
 
 build, numbers = test_fortran.build, test_fortran.numbers  # a fixture and a function
 
-LIMIT = "symfpu.codegen.series_program.STRAIGHT_LINE"
 TABLES_BY_DEFAULT = {"alpha, two seeds", "toda, two seeds", "mixed, three seeds", "beta, four seeds", "alpha, five seeds", "high order"}
 SLOW_AS_STATEMENTS = ("alpha, two seeds", "mixed, three seeds")  # seconds of SymPy each
-FORMS = {  # of a case, and the operations up to which it becomes statements; universal ones always do
-    **{f"{name}, tables": (name, 0) for name in CASES},
-    **{f"{name}, straight": (name, None) for name in CASES if name not in TABLES_BY_DEFAULT},
-    **{f"{name}, long": (name, 10**9) for name in SLOW_AS_STATEMENTS},
-    **{f"{name}, universal": (name, None) for name in UNIVERSAL},
+FORMS = {  # of a case: statements or tables
+    **{f"{name}, tables": (name, "tables") for name in CASES},
+    **{f"{name}, straight": (name, "default") for name in CASES if name not in TABLES_BY_DEFAULT},
+    **{f"{name}, long": (name, "statements") for name in SLOW_AS_STATEMENTS},
+    **{f"{name}, universal": (name, "default") for name in UNIVERSAL},
 }
 FAR = (123456789.125, -98765432109876.5)
 
@@ -84,32 +69,13 @@ end program pair
 """
 
 
-# The compiler takes its time: the others, and long statements, are run by `make long`; C runs all of them in `make test`.
-SHORT = (
-    "alpha, two seeds, tables",
-    "alpha, one seed, straight",
-    "one mode, straight",
-    "wrapped modes, straight",
-    "wrapped, order 1, universal",
-)
-
-
-def forms():
-    """Every form of every case."""
-    assert FORMS.keys() >= set(SHORT)
-    return [pytest.param(name, marks=[pytest.mark.long] * (name not in SHORT)) for name in FORMS]
-
-
-@pytest.fixture(scope="module", params=forms())
+@pytest.fixture(scope="module", params=FORMS)
 def form(request):
     """A case, the program of its series, its source, and whether the frequencies are a required argument."""
-    name, limit = FORMS[request.param]
+    name, kind = FORMS[request.param]
     required = request.param.endswith("universal")
     case = (UNIVERSAL if required else CASES)[name]
-    with pytest.MonkeyPatch.context() as patch:
-        if limit is not None:
-            patch.setattr(LIMIT, limit)
-        program = program_of((universal if required else numeric)(case), case)
+    program = program_of((universal if required else numeric)(case), case, form=kind)
     assert (program.straight is None) == request.param.endswith("tables")
     return case, program, FORTRAN.series(program), required
 
@@ -129,10 +95,9 @@ def driver(case, required):
     return text
 
 
-@pytest.mark.long
 def test_values_are_those_of_forty_digits(build, form):
     case, _, text, required = form
-    amplitudes, phases, frequencies, times = drawn(case)
+    amplitudes, phases, frequencies, times = series_cases.drawn(case)
     if required:
         frequencies = np.array([float(w) for w in case[2]])
     times = np.array([0.0, *times, *FAR, *np.linspace(-20, 20, 65)])  # more than one block of times
@@ -140,7 +105,7 @@ def test_values_are_those_of_forty_digits(build, form):
     s, n = len(phases), len(times) * (case[0].N - 1)
     found = np.split(numbers(build(text, driver(case, required))(given)), np.cumsum([s, s, s * s, n, n, n, n, n]))
     omega, again, jacobian, *orbits = found
-    assert_frequencies(omega, jacobian.reshape(s, s), case, amplitudes)
+    series_cases.assert_frequencies(omega, jacobian.reshape(s, s), case, amplitudes)
     assert np.array_equal(omega, again)
     Q, P, Q_alone, P_alone, Q_default, P_default = (values.reshape(len(times), -1) for values in orbits)
     assert np.array_equal(Q, Q_alone)
@@ -150,21 +115,16 @@ def test_values_are_those_of_forty_digits(build, form):
     exact_Q, exact_P = expected_orbit(case, amplitudes, phases, frequencies, times[few])
     assert_close(Q[few], exact_Q)
     assert_close(P[few], exact_P)
-    rates = frequencies if required else expected_frequencies(case, amplitudes)[0]
+    rates = frequencies if required else series_cases.expected_frequencies(case, amplitudes)[0]
     exact_Q, exact_P = expected_orbit(case, amplitudes, np.zeros(s), rates, times[near])
     assert_close(Q_default[near], exact_Q)
     assert_close(P_default[near], exact_P)
 
 
 def test_the_self_test_passes(build, form):
-    done = build(form[2], flags=["-DSAMPLE_SELF_TEST", "-O0"])()
-    assert done.returncode == 0, done.stderr
-    deviations = [float(x) for x in re.findall(r"\d\.\d+E[+-]\d+", done.stdout)]
-    assert len(deviations) == 4
-    assert max(deviations) <= OF_LARGEST
+    test_fortran.check_deviations(build(form[2], flags=["-DSAMPLE_SELF_TEST", "-O0"])(), 4)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "form", "coefficient"),
     [
@@ -190,7 +150,7 @@ def test_two_modules_in_one_program(build):
     values = numbers(build(source("one mode", called="alone"), source("order 0", "universal", "other"), PAIR)())
     expected = []
     for case, given in ((first, None), (second, (1.1796875,))):
-        omega, _ = expected_frequencies(case, (0.25,))
+        omega, _ = series_cases.expected_frequencies(case, (0.25,))
         expected += [*np.ravel(expected_orbit(case, (0.25,), (0.0,), given or omega, [12.5])), *omega]
     assert len(values) == len(expected) == 12
     assert np.abs(values - np.array(expected)).max() <= OF_LARGEST
@@ -215,14 +175,17 @@ def test_arrays_of_other_shapes_stop_the_program(stopped, call, message):
 
 @pytest.fixture(scope="module")
 def stopped(tmp_path_factory):
-    """What a program with one call says when it stops; the module is compiled once."""
-    folder, gfortran = tmp_path_factory.mktemp("shapes"), program("gfortran")
-    (folder / "sample.F90").write_text(source("one mode"))
+    return stopping(tmp_path_factory.mktemp("shapes"), source("one mode"), "x(2) = 1, y(2, 2) = 1")
+
+
+def stopping(folder, text, variables):
+    """What a program with one call of a module says when it stops; the module is compiled once."""
+    gfortran = program("gfortran")
+    (folder / "sample.F90").write_text(text)
     subprocess.run([gfortran, "-c", "sample.F90"], cwd=folder, check=True)
 
     def stopped(call):
-        text = f"program p\nuse sample\ndouble precision :: x(2) = 1, y(2, 2) = 1\ncall {call}\nend program\n"
-        (folder / "call.f90").write_text(text)
+        (folder / "call.f90").write_text(f"program p\nuse sample\ndouble precision :: {variables}\ncall {call}\nend program\n")
         subprocess.run([gfortran, "call.f90", "sample.o", "-o", "call"], cwd=folder, check=True)
         done = subprocess.run([folder / "call"], capture_output=True, text=True)
         assert done.returncode != 0
@@ -231,35 +194,13 @@ def stopped(tmp_path_factory):
     return stopped
 
 
-@pytest.mark.long
 def test_order_250_compiles_and_stays_finite(build):
     chain = Chain(2, alpha="0.2", beta="0.3")
     series = lindstedt(chain, (1,), ("1.421875",), 250)
     text = FORTRAN.series(series_program(series, "sample", series_facts(series)))
     assert "starts_odd" in text
     assert not re.search(r"\binf|nan\b", text.split("contains")[0])
-    done = build(text, flags=["-DSAMPLE_SELF_TEST", "-O0"])()
-    assert done.returncode == 0, done.stderr
-
-
-def test_lines_respect_the_limits_of_the_standard(form):
-    lines = form[2].splitlines()
-    assert max(map(len, lines)) <= test_fortran.LONGEST_LINE
-    assert max(map(len, lines[: lines.index("module sample")])) <= 120
-    longest = run = 0
-    for line in lines:
-        assert line.isascii()
-        run = run + 1 if line.endswith("&") else 0
-        longest = max(longest, run)
-    assert longest <= test_fortran.CONTINUATIONS
-
-
-def test_the_header_carries_all_facts(form):
-    _, program, text, _ = form
-    header = text.split("module sample")[0]
-    for key, value in program.facts.items():
-        assert f"{key}: {value}" in " ".join(header.replace("\n!", " ").split())
-    assert all(line.startswith("!") for line in header.splitlines() if line)
+    test_fortran.check_deviations(build(text, flags=["-DSAMPLE_SELF_TEST", "-O0"])(), 4)
 
 
 @pytest.mark.parametrize("name", ["orbit", "t", "Real64", "corrected_frequencies", "c0_1", "a1", "cos0", "2torus", "a b", "x" * 51])

@@ -2,22 +2,16 @@
 
 import hashlib
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from symfpu.cli.main import main
 from symfpu.codegen.gallery import GALLERY, build
-from tests.codegen.compilers import STRICT_C, program
+from tests.codegen.compilers import self_test
 
 FOLDER = Path(__file__).parents[2] / "generated"
 FILES = sorted(path for path in FOLDER.iterdir() if path.name != "manifest.json")
-COMPILERS = {
-    ".c": ["gcc", *STRICT_C],
-    ".F90": ["gfortran", "-std=f2008", "-O2", "-Wall", "-Werror"],
-}
 
 
 @pytest.fixture(scope="module")
@@ -51,16 +45,7 @@ def test_the_commands_of_the_manifest_make_the_file(tmp_path, monkeypatch):
 @pytest.mark.long
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
 def test_every_file_passes_its_own_test(path, tmp_path):
-    if path.suffix == ".py":
-        command = [sys.executable, str(path)]
-    elif path.suffix == ".m":
-        command = [program("octave-cli"), "--norc", "--path", str(path.parent), "--eval", f"{path.stem}('self_test');"]
-    else:
-        compiler, *flags = COMPILERS[path.suffix]
-        macro = f"-D{path.stem}_SELF_TEST" if path.suffix == ".c" else f"-D{path.stem.upper()}_SELF_TEST"
-        subprocess.run([program(compiler), *flags, macro, str(path), "-o", "self_test", "-lm"], check=True, cwd=tmp_path)
-        command = ["./self_test"]
-    run = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    run = self_test(path, tmp_path)
     assert run.returncode == 0, run.stdout + run.stderr
 
 

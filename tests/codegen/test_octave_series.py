@@ -11,7 +11,6 @@ from tests.codegen.series_cases import CASES, OF_LARGEST, UNIVERSAL, assert_clos
 from tests.codegen.test_octave import arrays, listed, octave
 
 STRAIGHT = ("alpha, one seed", "one mode", "wrapped modes", "one parity only", "order 0")  # small enough for statements to be forced
-LARGE = 10**5  # operations
 
 
 @cache
@@ -19,9 +18,9 @@ def series(name):
     return series_cases.numeric(CASES[name])
 
 
-def written(folder, name, solved, case):
+def written(folder, name, solved, case, form="default"):
     """The form that was written: straight-line or tables."""
-    program = series_cases.program_of(solved, case, name)
+    program = series_cases.program_of(solved, case, name, form)
     (folder / f"{name}.m").write_text(LANGUAGE.series(program))
     return program.straight is not None
 
@@ -59,11 +58,11 @@ def numbers(lines):
 
 @pytest.mark.long
 @pytest.mark.parametrize("names", [STRAIGHT, tuple(CASES)], ids=["statements", "tables"])
-def test_numeric_series_agree_with_forty_digits(names, tmp_path, monkeypatch):
-    monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", LARGE if names is STRAIGHT else 0)
+def test_numeric_series_agree_with_forty_digits(names, tmp_path):
+    form = "statements" if names is STRAIGHT else "tables"
     script, draws = [], []
     for n, name in enumerate(names):
-        assert written(tmp_path, f"series_{n}", series(name), CASES[name]) == (names is STRAIGHT)
+        assert written(tmp_path, f"series_{n}", series(name), CASES[name], form) == (names is STRAIGHT)
         amplitudes, *others = series_cases.drawn(CASES[name])
         draws.append((amplitudes * (-1) ** np.arange(len(amplitudes)), *others))
         script += asked(f"series_{n}", draws[-1], universal=False)
@@ -85,13 +84,12 @@ def test_universal_series_agree_with_forty_digits(tmp_path):
         agree(results, moved, given, universal=True)
 
 
-def test_changed_coefficient_and_bad_arguments(tmp_path, monkeypatch):
+def test_changed_coefficient_and_bad_arguments(tmp_path):
     case, script = CASES["alpha, one seed"], []
     formula = UNIVERSAL["order 0"]
     written(tmp_path, "formula", series_cases.universal(formula), formula)
     written(tmp_path, "sample", series("alpha, one seed"), case)
-    monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", 0)
-    program = series_cases.program_of(series("alpha, one seed"), case, "broken")
+    program = series_cases.program_of(series("alpha, one seed"), case, "broken", "tables")
     text = LANGUAGE.series(program)
     largest = repr(max((float(c) for block in program.tables.blocks for c in block.coefficients.flat), key=abs))
     at = text.index("function values = coefficientTable1")
@@ -105,14 +103,3 @@ def test_changed_coefficient_and_bad_arguments(tmp_path, monkeypatch):
     assert lines[1].startswith("broken:self_test | broken: the self-test failed")
     kinds = [line.split(" | ")[0].split(":")[1] for line in lines[2:]]
     assert kinds == [*["arguments"] * 5, "word", *["shape"] * 5]
-
-
-@pytest.mark.parametrize("limit", [LARGE, 0], ids=["statements", "tables"])
-def test_same_bytes_twice_in_short_lines_of_ascii(limit, monkeypatch):
-    monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", limit)
-    program = series_cases.program_of(series("wrapped modes"), CASES["wrapped modes"], "n" * 40)
-    text = LANGUAGE.series(program)
-    assert text == LANGUAGE.series(program)
-    assert text.isascii()
-    assert max(map(len, text.splitlines())) < 120
-    assert "Machine-written" in text

@@ -10,25 +10,15 @@ import pytest
 
 from symfpu.codegen.languages.mpmath import MPMATH
 from symfpu.codegen.languages.numpy import NUMPY
-from tests.codegen.series_cases import (
-    CASES,
-    DIGITS,
-    UNIVERSAL,
-    assert_close,
-    assert_frequencies,
-    drawn,
-    expected_frequencies,
-    expected_orbit,
-    numeric,
-    program_of,
-    universal,
-)
+from tests.codegen import series_cases
+from tests.codegen.series_cases import CASES, DIGITS, UNIVERSAL, assert_close, drawn, expected_orbit, numeric, program_of, universal
 from tests.tolerances import LAST_DIGIT
 
 pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
 
-FORMS = {"straight": 10**9, "tables": 0}
-NUMERIC = [(name, form) for name in CASES for form in FORMS if form == "tables" or name in ("order 0", "one mode", "wrapped modes")]
+SMALL = ("order 0", "one mode", "wrapped modes")
+UNIVERSALS = [(name, "universal") for name in UNIVERSAL]
+NUMERIC = [*((name, "tables") for name in CASES), *((name, "statements") for name in SMALL)]
 
 
 def module(text, path):
@@ -39,74 +29,58 @@ def module(text, path):
     return loaded
 
 
-def emitted(emitter, series, case, folder):
-    program = program_of(series, case)
-    return module(emitter.series(program), folder / "my_series.py"), program
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("name", "form"), NUMERIC)
-def test_numpy_values_are_those_of_the_series(name, form, tmp_path, monkeypatch):
-    monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", FORMS[form])
-    case = CASES[name]
-    ours, program = emitted(NUMPY, numeric(case), case, tmp_path)
+def emitted(emitter, name, form, folder, digits=DIGITS):
+    """The module of a case in a form, and the case."""
+    case = (UNIVERSAL if form == "universal" else CASES)[name]
+    series = universal(case) if form == "universal" else numeric(case, digits=digits)
+    program = program_of(series, case, form="default" if form == "universal" else form)
     assert (program.straight is None) == (form == "tables")
+    return module(emitter.series(program), folder / "my_series.py"), case
+
+
+def asked(ours, case, form, number):
+    """Amplitudes, phases, frequencies and times, and the functions of these that the module has."""
     A, phases, omega, t = drawn(case)
-    Q, P = expected_orbit(case, A, phases, omega, t)
-    for values, exact in zip(ours.orbit(t, A, phases, omega), (Q, P), strict=True):
+    if form != "universal":
+        return (A, phases, omega, t), lambda at: ours.orbit(at, A, phases, omega), lambda: ours.corrected_frequencies(A)
+    omega = [number(float(w)) for w in case[2]]
+    return (A, phases, omega, t), lambda at: ours.orbit(at, A, omega, phases), lambda: ours.corrected_frequencies(A, omega)
+
+
+@pytest.mark.parametrize(("name", "form"), [*NUMERIC, *UNIVERSALS])
+def test_numpy_values_are_those_of_the_series(name, form, tmp_path):
+    ours, case = emitted(NUMPY, name, form, tmp_path)
+    given, orbit, corrected = asked(ours, case, form, float)
+    A, _, _, t = given
+    for values, exact in zip(orbit(t), expected_orbit(case, *given), strict=True):
         assert_close(values, exact)
-    assert_frequencies(*ours.corrected_frequencies(A), case, A)
+    series_cases.assert_frequencies(*corrected(), case, A)
     assert ours.self_test() <= ours.TOLERANCE
-    assert np.allclose(ours.positions(1.5, A), ours.positions([1.5], A, [0] * len(A), ours.corrected_frequencies(A)[0])[0], rtol=LAST_DIGIT)
+    if form != "universal":
+        by_default = ours.positions([1.5], A, [0] * len(A), corrected()[0])[0]
+        assert np.allclose(ours.positions(1.5, A), by_default, rtol=LAST_DIGIT)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("name", UNIVERSAL)
-def test_numpy_values_of_a_universal_series(name, tmp_path):
-    case = UNIVERSAL[name]
-    ours, _ = emitted(NUMPY, universal(case), case, tmp_path)
-    A, phases, _, t = drawn(case)
-    omega = [float(w) for w in case[2]]
-    for values, exact in zip(ours.orbit(t, A, omega, phases), expected_orbit(case, A, phases, omega, t), strict=True):
-        assert_close(values, exact)
-    assert_frequencies(*ours.corrected_frequencies(A, omega), case, A)
-    assert ours.self_test() <= ours.TOLERANCE
-
-
-@pytest.mark.parametrize(("name", "form"), [("mixed, three seeds", "tables"), ("wrapped modes", "straight"), ("order 0", "tables")])
-def test_mpmath_keeps_the_digits_of_the_series(name, form, tmp_path, monkeypatch):
-    monkeypatch.setattr("symfpu.codegen.series_program.STRAIGHT_LINE", FORMS[form])
-    case = CASES[name]
-    ours, _ = emitted(MPMATH, numeric(case), case, tmp_path)
-    A, phases, omega, t = drawn(case)
-    Q, P = expected_orbit(case, A, phases, omega, t[:3])
+@pytest.mark.parametrize(
+    ("name", "form"), [("mixed, three seeds", "tables"), ("wrapped modes", "statements"), ("order 0", "tables"), *UNIVERSALS]
+)
+def test_mpmath_keeps_the_digits_of_the_series(name, form, tmp_path):
+    ours, case = emitted(MPMATH, name, form, tmp_path)
+    given, orbit, corrected = asked(ours, case, form, mpmath.mpf)
+    A, _, _, t = given
+    exact_orbit = expected_orbit(case, *given[:3], t[:3])
     with mpmath.workdps(DIGITS + 5):
-        for time, q, p in zip(t, Q, P, strict=False):
-            for values, exact in zip(ours.orbit(time, A, phases, omega), (q, p), strict=True):
-                assert np.abs(np.array(values) - exact).max() <= mpmath.mpf(10) ** -(DIGITS - 2) * np.abs(exact).max()
-        values, slopes = ours.corrected_frequencies(A)
-        exact, jacobian = expected_frequencies(case, A)
-        assert np.abs(np.array(values) - exact).max() <= mpmath.mpf(10) ** -(DIGITS - 2)
-        assert np.abs(np.array(slopes) - jacobian).max() <= mpmath.mpf(10) ** -(DIGITS - 2) * np.abs(jacobian).max()
+        near = mpmath.mpf(10) ** -(DIGITS - 2)
+        for time, *exact_parts in zip(t[:3], *exact_orbit, strict=True):
+            for values, exact in zip(orbit(time), exact_parts, strict=True):
+                assert np.abs(np.array(values) - exact).max() <= near * np.abs(exact).max()
+        values, slopes = corrected()
+        exact, jacobian = series_cases.expected_frequencies(case, A)
+        assert np.abs(np.array(values) - exact).max() <= near
+        assert np.abs(np.array(slopes) - jacobian).max() <= near * np.abs(jacobian).max()
     assert ours.self_test() <= ours.TOLERANCE
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("name", UNIVERSAL)
-def test_mpmath_of_a_universal_series_has_any_digits(name, tmp_path):
-    case = UNIVERSAL[name]
-    ours, _ = emitted(MPMATH, universal(case), case, tmp_path)
-    A, phases, _, t = drawn(case)
-    omega = [mpmath.mpf(float(w)) for w in case[2]]
-    Q, P = expected_orbit(case, A, phases, omega, t[:2])
-    with mpmath.workdps(DIGITS + 5):
-        for time, q, p in zip(t, Q, P, strict=False):
-            for values, exact in zip(ours.orbit(time, A, omega, phases), (q, p), strict=True):
-                assert np.abs(np.array(values) - exact).max() <= mpmath.mpf(10) ** -(DIGITS - 2) * np.abs(exact).max()
-    assert ours.self_test() <= ours.TOLERANCE
-
-
-@pytest.mark.long
 @pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_the_file_runs_by_itself_and_sees_a_changed_number(emitter, tmp_path):
     case = CASES["wrapped modes"]
@@ -123,8 +97,7 @@ def test_the_file_runs_by_itself_and_sees_a_changed_number(emitter, tmp_path):
 
 @pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_wrong_numbers_of_parameters_are_refused(emitter, tmp_path):
-    case = CASES["wrapped modes"]
-    ours, _ = emitted(emitter, numeric(case, digits=None), case, tmp_path)
+    ours, _ = emitted(emitter, "wrapped modes", "statements", tmp_path, digits=None)
     with pytest.raises(ValueError, match=r"amplitudes must be one number for each of the seeds \(2, 3\)"):
         ours.positions(0.0, [0.1])
     with pytest.raises(ValueError, match="phases must be one number"):

@@ -8,16 +8,12 @@ import sys
 import numpy as np
 import pytest
 
-from symfpu.bundles.bundle import save
-from symfpu.chain.chain import Chain
+from symfpu import Chain, InputError, export, lindstedt, save, solve_amplitudes
 from symfpu.cli.main import main
-from symfpu.codegen.export import LANGUAGES, export
-from symfpu.errors import InputError
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.codegen.export import LANGUAGES
 from tests.codegen import test_fortran
-from tests.codegen.compilers import compile_c
-from tests.codegen.compilers import program as program_named
+from tests.codegen.compilers import c_self_test, compile_c
+from tests.codegen.test_fortran_series import stopping
 from tests.codegen.test_octave import arrays, listed, octave
 from tests.codegen.test_python_series import module
 from tests.codegen.universal_cases import CASES, TIMES, expected, given, program, series
@@ -77,7 +73,7 @@ def from_mpmath(name, folder):
 
 def library_of(name, folder):
     text = source("c", name)
-    run = subprocess.run([compile_c(folder, {"sample.c": text}, "-Dsample_SELF_TEST")], capture_output=True, text=True, check=False)
+    run = c_self_test(folder, text)
     assert run.returncode == 0, run.stdout
     return ctypes.CDLL(str(compile_c(folder, {"sample.c": text}, "-shared", "-fPIC", output="sample.so")))
 
@@ -140,16 +136,8 @@ def from_octave(name, folder):
 RUNS = {"c": from_c, "fortran": from_fortran, "numpy": from_numpy, "mpmath": from_mpmath, "octave": from_octave}
 
 
-def pairs():
-    """Every language with every case; the default run has what does not take seconds, and one case of each compiler."""
-    for language in LANGUAGES:
-        for name in CASES:
-            slow = name != "both couplings"
-            yield pytest.param(language, name, marks=[pytest.mark.long] * slow)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("language", "name"), list(pairs()))
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("name", CASES)
 def test_values_and_derivatives_are_those_of_the_series(language, name, tmp_path, request):
     more = [request.getfixturevalue("build")] if language == "fortran" else []
     found = RUNS[language](name, tmp_path, *more)
@@ -157,25 +145,6 @@ def test_values_and_derivatives_are_those_of_the_series(language, name, tmp_path
         assert np.shape(values) == exact.shape, kind
         error = np.abs(np.asarray(values) - exact).max()
         assert error <= OF_LARGEST * np.abs(exact).max(), kind
-
-
-@pytest.mark.long
-def test_the_large_case_does_not_fit_into_statements():
-    large = program("large")
-    assert large.straight is None
-    assert len(large.operations.left) > 50_000
-    assert f"{large.operations.nodes:,} nodes, {len(large.operations.left):,} terms, " in large.facts["program"]
-
-
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_the_header_tells_the_size_in_short_lines_of_ascii(language):
-    text = source(language, "both couplings")
-    assert program("both couplings").facts["program"] in text
-    assert "hash of the series" in text
-    assert text == source(language, "both couplings")
-    assert text.isascii()
-    if language not in ("numpy", "mpmath"):
-        assert max(map(len, text.splitlines())) <= 132  # as many as Fortran allows
 
 
 def broken(language, pattern):
@@ -186,10 +155,8 @@ def broken(language, pattern):
     return wrong
 
 
-@pytest.mark.long
 def test_self_tests_see_a_changed_operation(tmp_path, build):
-    c = compile_c(tmp_path, {"a.c": broken("c", r"(factor\[\d+\] = \{\n)-?\d+")}, "-Dsample_SELF_TEST")
-    assert subprocess.run([c], capture_output=True, check=False).returncode == 1
+    assert c_self_test(tmp_path, broken("c", r"(factor\[\d+\] = \{\n)-?\d+")).returncode == 1
     done = build(broken("fortran", r"(data \(factor\(i\).*\n *)-?\d+"), flags=["-DSAMPLE_SELF_TEST", "-O0"])()
     assert "above" in done.stderr
     for language in ("numpy", "mpmath"):
@@ -235,15 +202,13 @@ def test_wrong_arguments_in_c(tmp_path):
         ("corrected_frequencies(x, x, x(1:1))", "omega must have size 2"),
     ],
 )
-def test_arrays_of_other_shapes_stop_the_fortran_program(call, message, tmp_path):
-    gfortran = program_named("gfortran")
-    (tmp_path / "sample.F90").write_text(source("fortran", "wrapped, cut"))
-    lines = ["program p", "use sample", "double precision :: x(2) = 1, z(3, 2, 2) = 1", f"call {call}", "end program"]
-    (tmp_path / "main.F90").write_text("\n".join(lines) + "\n")
-    subprocess.run([gfortran, "sample.F90", "main.F90", "-o", "p"], cwd=tmp_path, check=True)
-    done = subprocess.run(["./p"], cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode != 0
-    assert message in done.stderr
+def test_arrays_of_other_shapes_stop_the_fortran_program(call, message, stopped):
+    assert message in stopped(call)
+
+
+@pytest.fixture(scope="module")
+def stopped(tmp_path_factory):
+    return stopping(tmp_path_factory.mktemp("shapes"), source("fortran", "wrapped, cut"), "x(2) = 1, z(3, 2, 2) = 1")
 
 
 def test_wrong_arguments_in_octave(tmp_path):
@@ -267,7 +232,6 @@ def test_what_cannot_be_exported_says_so(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.long
 def test_command_line(tmp_path, capsys):
     file = str(save(tmp_path / "universal.symfpu", lindstedt(Chain(8, "0.3"), (1, 2), order=5)))
     assert main(["export", file, "--series", "--lang", "numpy", "-o", str(tmp_path / "large")]) == 0

@@ -4,10 +4,8 @@ from functools import cache
 
 import numpy as np
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain, lindstedt, sample_series
 from symfpu.codegen.series_program import series_facts, series_program
-from symfpu.series.lindstedt import lindstedt
-from symfpu.series.sample import sample_series
 
 DIGITS = 30  # of the series at the frequencies
 

@@ -5,17 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain, EscapedOrbit, InputError, UnstableStep, alignment_indices, integrate, packet_state, random_state
 from symfpu.dynamics import onset
-from symfpu.dynamics.alignment import alignment_indices, drawn_frame
+from symfpu.dynamics.alignment import drawn_frame
 from symfpu.dynamics.blanes_moan6 import BLANES_MOAN6
 from symfpu.dynamics.dimension import CHAOS_GROWTH, outgrown_powers
 from symfpu.dynamics.onset import _Ensemble, _Verdict, chaos_times
-from symfpu.dynamics.orbits import integrate
-from symfpu.dynamics.starts import packet_state, random_state
-from symfpu.dynamics.stopping import EscapedOrbit, UnstableStep
 from symfpu.dynamics.tangent import tangent_steps
-from symfpu.errors import InputError
 from tests.tolerances import ONSET_STEPS
 
 BETA, ALPHA, TODA = Chain(8, beta=1), Chain(8, alpha=1), Chain(8, potential="toda:1")

@@ -3,20 +3,11 @@
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.alignment import _first_frame, alignment_indices, seconds_needed
-from symfpu.dynamics.frame_run import OrbitLost, carried
+from symfpu import Chain, InputError, OrbitLost, alignment_indices, lindstedt, seconds_needed, solve_amplitudes
+from symfpu.dynamics.alignment import _first_frame
+from symfpu.dynamics.frame_run import carried
 from symfpu.dynamics.tangent import moving_frame, tangent_steps
-from symfpu.errors import InputError
-from symfpu.series.travelling import travelling_waves
-from symfpu.tori.ring_torus import travelling_torus
-from tests.tolerances import (
-    CENTRAL_DIFFERENCE,
-    ENERGY_LONG_STEPS,
-    ROUNDING,
-    SAME_VOLUME,
-    STEP_ERROR,
-)
+from tests.tolerances import CENTRAL_DIFFERENCE, ENERGY_LONG_STEPS, ROUNDING, SAME_VOLUME, STEP_ERROR
 
 
 def ring(N, **law):
@@ -81,8 +72,8 @@ TODA_TORI = [(5, (1,), ("1.210817",), 20, 4e4), (6, (1, -2), ("1.02", "1.766692"
 @pytest.mark.long
 @pytest.mark.parametrize(("N", "seeds", "omega", "order", "T"), TODA_TORI)
 def test_a_torus_of_waves_has_as_many_dimensions_as_seeds(N, seeds, omega, order, T):
-    torus = travelling_torus(travelling_waves(ring(N, potential="toda:1"), seeds, omega, order))
-    start = torus.mode_coordinates(0.0), torus.mode_momenta(0.0)
+    torus = solve_amplitudes(lindstedt(ring(N, potential="toda:1"), seeds, omega, order))
+    start = torus.Q(0.0), torus.P(0.0)
     found = alignment_indices(torus.chain, *start, T, vectors=4, step=0.2, frames=1)
     assert found.dimension().verdict == f"regular, dimension {len(seeds)}"
     assert found.energy_error < ENERGY_LONG_STEPS
@@ -99,17 +90,6 @@ def test_a_chaotic_orbit_of_a_ring_keeps_the_volume_of_its_phase_space():
     assert abs(diagonal.sum()) < SAME_VOLUME
     found = alignment_indices(chain, *state, 500.0, vectors=2, step=0.1, frames=1)
     assert found.dimension().verdict == "chaotic"
-
-
-def test_a_run_goes_on_to_the_last_bit(tmp_path):
-    chain, path = ring(5, potential="toda:1/2"), tmp_path / "run"
-    state, run = drawn(chain, 0.2), {"vectors": 3, "samples": 64}
-    alignment_indices(chain, *state, 200.0, file=path, **run, frames=1)
-    again = alignment_indices(chain, *state, 200.0, file=path, **run, frames=1)
-    alone = alignment_indices(chain, *state, 200.0, **run, frames=1)
-    assert np.array_equal(again.log10_gali, alone.log10_gali)
-    with pytest.raises(InputError, match="ends is periodic in it, fixed here"):
-        alignment_indices(Chain(5, potential="toda:1/2"), [0.1, 0, 0, 0], np.zeros(4), 200.0, file=path, **run, frames=1)
 
 
 def test_what_rings_do_not_have_is_refused():

@@ -5,11 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.alignment import alignment_indices, seconds_needed
+from symfpu import Chain, InputError, alignment_indices
 from symfpu.dynamics.dimension import TorusDimension
 from symfpu.dynamics.several_frames import together
-from symfpu.errors import InputError
 
 BETA = Chain(4, beta=1)
 RUN = BETA, [0, 0.4, 0], [0, 0, 0], 2e3
@@ -47,11 +45,6 @@ def test_four_frames_by_default():
     several = alignment_indices(BETA, [0, 0.4, 0], [0, 0, 0], 200.0, vectors=2, samples=64)
     assert len(several.frames) == len(several.dimension().frames) == 4
     assert "by 4 frames" in repr(several)
-
-
-@pytest.mark.long
-def test_frames_cost_one_after_the_other():
-    assert seconds_needed(BETA, 1e6, frames=50) > 3 * seconds_needed(BETA, 1e6, frames=1)
 
 
 @pytest.mark.parametrize("frames", [0, 1.5, 10**6])

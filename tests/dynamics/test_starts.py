@@ -5,12 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.starts import packet_state, particle_state, random_state
-from symfpu.errors import InputError
-from symfpu.localization.profiles import fpu_trajectory
-from symfpu.tori.frequencies import torus_at_amplitudes
-from symfpu.tori.ring_torus import unfold
+from symfpu import Chain, InputError, fpu_trajectory, packet_state, particle_state, random_state, torus_at_amplitudes, unfold
 from tests.tolerances import ROUNDING, TEN_ROUNDINGS
 
 CHAINS = [
@@ -93,7 +88,7 @@ def test_particles_come_back(N, ends, seed):
 def test_a_state_of_a_torus_is_the_particles_state():
     torus = torus_at_amplitudes(Chain(4, alpha="0.3"), {1: "0.1"}, 2)
     ring = unfold(torus.in_doubles())
-    state = particle_state(ring.chain, ring.positions(0.0), ring.momenta(0.0))
+    state = particle_state(ring.chain, ring.x(0.0), ring.p(0.0))
     assert np.allclose(state, ring.state(), rtol=0, atol=ROUNDING)
 
 

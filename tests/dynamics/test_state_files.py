@@ -1,12 +1,11 @@
 """States in files: columns with spaces, tabs and commas, archives, ends of both kinds, files that are none."""
 
+import os
+
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.starts import particle_state
-from symfpu.dynamics.state_files import read_state
-from symfpu.errors import InputError
+from symfpu import Chain, InputError, particle_state, read_state
 
 CHAIN, RING = Chain(4, alpha=1), Chain(3, alpha=1, ends="periodic")
 X, P = [0.1, -0.25, 1e-3], [0.0, 0.5, -0.5]
@@ -72,3 +71,11 @@ def test_other_archives_are_refused(arrays, words, tmp_path):
 def test_a_missing_file_is_an_error_of_the_system(tmp_path):
     with pytest.raises(FileNotFoundError):
         read_state(CHAIN, tmp_path / "none.txt")
+
+
+@pytest.mark.parametrize("name", ["state.txt", "state.npz"])
+def test_what_might_never_end_is_not_read(name, tmp_path):
+    """A pipe that nobody writes: opening it would wait for ever."""
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(InputError, match="allowed is a regular file"):
+        read_state(CHAIN, tmp_path / name)

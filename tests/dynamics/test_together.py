@@ -3,13 +3,9 @@
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.motion import FEWEST_SINGLY, Motion, parted
-from symfpu.dynamics.orbits import integrate
+from symfpu import Chain, EscapedOrbit, integrate, random_state
+from symfpu.dynamics.motion import FEWEST_SINGLY, Motion
 from symfpu.dynamics.schemes import SCHEMES
-from symfpu.dynamics.starts import random_state
-from symfpu.dynamics.stopping import EscapedOrbit
-from symfpu.errors import InputError
 from symfpu.numbers.lanes import LANES
 from tests.tolerances import ENERGY_WALK
 
@@ -72,23 +68,6 @@ def test_workers_share_orbits_out_without_changing_bits():
         assert np.array_equal(shared.Q, alone.Q), workers
 
 
-@pytest.mark.parametrize(
-    ("orbits", "together", "workers", "sizes"),
-    [
-        (1, 8, 4, [1]),
-        (8, 8, 1, [8]),
-        (19, 8, 1, [8, 8, 3]),
-        (19, 8, 4, [5, 5, 5, 4]),
-        (3, 1, 1, [1, 1, 1]),
-        (3, 8, 7, [1, 1, 1]),
-    ],
-)
-def test_orbits_are_parted(orbits, together, workers, sizes):
-    parts = parted(orbits, together, workers)
-    assert [len(range(orbits)[part]) for part in parts] == sizes
-    assert [i for part in parts for i in range(orbits)[part]] == list(range(orbits))
-
-
 def test_every_orbit_has_its_energy_error():
     chain = Chain(8, alpha="0.3")
     Q, P = states(chain, 6)
@@ -143,48 +122,3 @@ def test_each_orbit_stops_at_its_own_bounds(place, side):
     assert motion.advance(moved, steps, map) == alone
     done, _, _ = motion.look(state, steps, 1, map)
     assert done == alone
-
-
-class Stopped(Exception):
-    """In place of a kill."""
-
-
-def test_an_interrupted_run_goes_on_in_the_same_bits(tmp_path, monkeypatch):
-    monkeypatch.setattr("symfpu.dynamics.orbits.BLOCK", 10_000)
-    chain = Chain(7, alpha="0.3", beta="0.2")
-    Q, P = states(chain, LANES + 1)
-    run = {"step": 0.1, "samples": 4, "averages": True}
-    whole = integrate(chain, Q, P, 200.0, **run)
-    looks = []
-
-    def stop(label, fraction):
-        looks.append(fraction)
-        if len(looks) % 2 == 0:
-            raise Stopped
-
-    resumed = None
-    while resumed is None:
-        try:
-            resumed = integrate(chain, Q, P, 200.0, **run, file=tmp_path / "orbits", every=0, progress=stop)
-        except Stopped:
-            continue
-    assert len(looks) > 4
-    assert looks == sorted(looks)
-    assert np.array_equal(resumed.Q, whole.Q)
-    assert np.array_equal(resumed.P, whole.P)
-    assert np.array_equal(resumed.averages, whole.averages)
-
-
-@pytest.mark.parametrize(
-    ("Q", "P", "name"),
-    [
-        (np.zeros((4, 5)), np.zeros((4, 5)), "Q"),
-        (np.zeros((6, 4)), np.zeros((6, 4)), "Q"),
-        (np.zeros((4, 6)), np.zeros((3, 6)), "P"),
-        (np.zeros((4, 6)), np.zeros(6), "P"),
-        (np.full((4, 6), np.nan), np.zeros((4, 6)), "Q, P"),
-    ],
-)
-def test_wrong_shapes_are_refused(Q, P, name):
-    with pytest.raises(InputError, match=rf"^{name} = "):
-        integrate(Chain(7, alpha="0.3"), Q, P, 10.0, step=0.1)

@@ -2,8 +2,7 @@
 
 from functools import lru_cache
 
-from symfpu.chain.chain import Chain
-from symfpu.families.following import family
+from symfpu import Chain, family
 
 ROUND = Chain(8, alpha="0.4", beta="0.1")
 

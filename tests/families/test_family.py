@@ -8,40 +8,18 @@ import numpy as np
 import pytest
 from numpy.polynomial import Chebyshev
 
-from symfpu.breathers.at_energy import breather_at_energy
-from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
-from symfpu.breathers.floquet import floquet
-from symfpu.chain.chain import Chain
-from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
+import symfpu
+from symfpu import Chain, InputError, NotInFamily, breather_at_energy, family, member_at_energy, member_at_frequency
 from symfpu.families import continuation
 from symfpu.families.beginnings import first_torus
-from symfpu.families.continuation import member
-from symfpu.families.family import Family, NotInFamily, member_at_energy, member_at_frequency
-from symfpu.families.following import family
+from symfpu.families.members import member
 from symfpu.refinement.conditions import Crossing
-from symfpu.refinement.tori import NoTorus, refine_at_energy, shifts_of
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
-from tests.families.cases import ROUND, whole
+from symfpu.refinement.tori import shifts_of
+from tests import tolerances
+from tests.families.cases import ROUND
 from tests.oracles.oscillators import cubic_oscillator
-from tests.tolerances import (
-    DISTINCTION,
-    FIVE_PLACES,
-    FIXED_ENERGY,
-    FIXED_RATIO,
-    FOLD,
-    LAST_DIGIT,
-    LINEAR_LIMIT,
-    LOOSE_MEMBER,
-    LOW_ACCURACY,
-    NEWTON_RESIDUAL,
-    OSCILLATOR,
-    RESONANCE_ENERGY,
-    RESONANT_AMPLITUDE,
-    SAME_ORBIT,
-    SIX_PLACES,
-    TEN_ROUNDINGS,
-)
+from tests.refusals import each, refused
+from tests.tolerances import FIXED_ENERGY, FIXED_RATIO, LAST_DIGIT, NEWTON_RESIDUAL, OSCILLATOR, RESONANCE_ENERGY, SAME_ORBIT
 
 # A step of at most 0.6 in ln A, thus 1.2 in ln H, is halved eight times.
 STABILITY = 0.01
@@ -157,7 +135,7 @@ def test_a_way_down_is_not_followed():
 def test_members_are_the_breathers_of_harmonic_balance():
     for m in breathers().members:
         (amplitude,) = m.amplitudes.values()
-        orbit = breather_at_amplitude(ROUND, 3, amplitude)
+        orbit = symfpu.breather_at_amplitude(ROUND, 3, amplitude)
         assert omega(m) == pytest.approx(float(orbit.frequency), rel=SAME_ORBIT)
         assert m.energy == pytest.approx(orbit.energy(), rel=SAME_ORBIT)
         assert m.harmonic_energy == pytest.approx(orbit.harmonic_energies().sum(), rel=SAME_ORBIT)
@@ -165,7 +143,7 @@ def test_members_are_the_breathers_of_harmonic_balance():
             expected = orbit.cosines[n] if n < len(orbit.cosines) else 0 * row
             assert row == pytest.approx(expected, abs=SAME_ORBIT * amplitude)
     last = breathers().members[-1]
-    assert periodic_orbit(ROUND, 3, last.torus.frequencies[0]).amplitude == pytest.approx(last.amplitudes[3], rel=1e3 * SAME_ORBIT)
+    assert symfpu.periodic_orbit(ROUND, 3, last.torus.frequencies[0]).amplitude == pytest.approx(last.amplitudes[3], rel=1e3 * SAME_ORBIT)
 
 
 def averages(torus):
@@ -178,14 +156,6 @@ def averages(torus):
     return torus.chain.harmonic_energies(Q, P).mean(axis=0)
 
 
-@pytest.mark.long
-def test_members_keep_the_ratio_of_their_averaged_energies():
-    for m in folded().members[::4]:
-        mine = averages(m.torus)
-        assert mine[0] == pytest.approx(mine[1], rel=FIXED_RATIO)
-        assert m.amplitudes[1] / m.amplitudes[2] != pytest.approx(2, rel=DISTINCTION)
-
-
 @pytest.mark.parametrize("ratios", [{"amplitude_ratio": {3: "1/2", 1: 1}}, {"energy_ratio": {1: 3, 3: 1}}], ids=["amplitudes", "energies"])
 def test_members_keep_the_ratio_asked_for(ratios):
     for m in family(Chain(6, beta="0.3"), (1, 3), "0.02", from_energy="0.01", **ratios).members:
@@ -196,13 +166,6 @@ def test_members_keep_the_ratio_asked_for(ratios):
             assert mine[0] / mine[2] == pytest.approx(3, rel=FIXED_RATIO)
 
 
-def test_the_goal_may_be_a_harmonic_energy():
-    found = family(ROUND, (3,), "0.5", from_energy="0.2", harmonic=True)
-    assert found.members[0].harmonic_energy == pytest.approx(0.2, rel=FIXED_ENERGY)
-    assert found.members[-1].harmonic_energy == pytest.approx(0.5, rel=FIXED_ENERGY)
-    assert found.members[-1].energy != pytest.approx(found.members[-1].harmonic_energy, rel=DISTINCTION)
-
-
 @pytest.mark.long
 def test_a_fold_of_a_frequency_is_passed_and_located():
     """omega_2 has a minimum, seen over tori of given energies; its shift changes sign later, and the family goes on beyond both."""
@@ -211,13 +174,16 @@ def test_a_fold_of_a_frequency_is_passed_and_located():
     near = folded().members[fold.after].torus
 
     def shift(ln_energy):
-        return [float(shifts_of(refine_at_energy(near, float(np.exp(x)), harmonic=False, energy_ratio={1: 1, 2: 1}))[1]) for x in ln_energy]
+        return [
+            float(shifts_of(symfpu.refine_at_energy(near, float(np.exp(x)), harmonic=False, energy_ratio={1: 1, 2: 1}))[1])
+            for x in ln_energy
+        ]
 
     about = np.log(0.003)
     shifts = Chebyshev.interpolate(shift, 10, domain=(about - 0.25, about + 0.25))
     (turn,) = [x.real for x in shifts.deriv().roots() if abs(x.imag) < 1e-9 and abs(x.real - about) < 0.25]
     assert shifts.deriv(2)(turn) > 0
-    assert fold.energy == pytest.approx(np.exp(turn), rel=FOLD)
+    assert fold.energy == pytest.approx(np.exp(turn), rel=tolerances.FOLD)
     assert fold.value == pytest.approx(float(PAIR.linear_frequency(2)) + shifts(turn), abs=LAST_DIGIT)
     assert folded().members[fold.after].energy <= fold.energy <= folded().members[fold.after + 1].energy
     signs = [float(shifts_of(m.torus)[1]) > 0 for m in folded().members]
@@ -229,13 +195,13 @@ def test_a_fold_of_a_frequency_is_passed_and_located():
 @pytest.mark.long
 def test_a_resonance_is_named_and_located():
     """15 omega = Omega_17 on the breather of harmonic balance with the energy of the event; d(15 omega)/d ln H is some 0.005 there."""
-    event = next(e for e in resonant().events if e.kind == "resonance")
+    event = next(e for e in resonant().events if e.what == "divisor")
     assert (event.mode, event.harmonic, event.interpolated) == (17, (15,), False)
     first, second = resonant().members[event.after : event.after + 2]
     assert first.energy < event.energy < second.energy
     at = breather_at_energy(LONG, 1, repr(event.energy))
     assert 15 * float(at.frequency) == pytest.approx(LONG.frequencies()[16], abs=RESONANCE_ENERGY * 0.005)
-    assert event.value == pytest.approx(at.cosines[15, 16], rel=RESONANT_AMPLITUDE)
+    assert event.value == pytest.approx(at.cosines[15, 16], rel=tolerances.RESONANT_AMPLITUDE)
     assert "resonance of mode 17 with harmonic (15) at H = 0.0392110" in repr(event)
 
 
@@ -257,10 +223,11 @@ def test_a_resonance_of_two_frequencies_is_located():
 
 @pytest.mark.long
 def test_a_resonance_between_the_first_members_is_found():
-    later = next(e for e in resonant().events if e.mode == 17)
-    found = family(LONG, (1,), "0.043", from_energy="0.0385", members=2)
-    assert [(e.mode, e.harmonic, e.after) for e in found.events] == [(17, (15,), 0)]
-    assert found.events[0].energy == pytest.approx(later.energy, rel=RESONANCE_ENERGY)
+    later = next(e for e in resonant().events if e.what == "divisor")
+    found = family(LONG, (1,), "0.043", from_energy="0.039", members=2)
+    [event] = [e for e in found.events if e.what == "divisor"]
+    assert (event.mode, event.harmonic, event.after) == (17, (15,), 0)
+    assert event.energy == pytest.approx(later.energy, rel=RESONANCE_ENERGY)
 
 
 @pytest.mark.long
@@ -269,7 +236,7 @@ def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
     other = resonant().members[0].torus
 
     def none(torus, conditions, **options):
-        raise NoTorus("tried", other, 1.0)
+        raise symfpu.NoTorus("tried", other, 1.0)
 
     def another(torus, conditions, **options):
         return other
@@ -284,7 +251,7 @@ def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
         with monkeypatch.context() as patched:
             patched.setattr(continuation, "refined_torus", instead)
             found = family(LONG, (1,), "0.05", from_energy="0.02")
-        event = next(e for e in found.events if e.mode == 17)
+        event = next(e for e in found.events if e.what == "divisor")
         first, second = found.members[event.after : event.after + 2]
         assert (event.mode, event.harmonic, event.interpolated) == (17, (15,), True)
         assert first.energy < event.energy < second.energy
@@ -302,26 +269,26 @@ def test_a_family_that_comes_back_to_rest_ends_there():
     first, *_, other, last = found.members
 
     def of_the_limit(m):
-        return float(breather_at_amplitude(LOOP, 1, m.amplitudes[1]).frequency)
+        return float(symfpu.breather_at_amplitude(LOOP, 1, m.amplitudes[1]).frequency)
 
     assert first.energy > other.energy > last.energy
     assert first.amplitudes[1] > other.amplitudes[1] > last.amplitudes[1]
     shift = omega(other) - LOOP.frequencies()[0]
     assert abs(omega(other) - of_the_limit(other)) > 0.01 * shift
-    assert omega(last) == pytest.approx(of_the_limit(last), abs=LINEAR_LIMIT * shift)
+    assert omega(last) == pytest.approx(of_the_limit(last), abs=tolerances.LINEAR_LIMIT * shift)
 
 
 @pytest.mark.long
 def test_a_beginning_beyond_the_series_is_led_up_to():
     """At H = 0.5 Newton's method from the lowest order leads to no torus; the first member is the end of a family from below."""
-    with pytest.raises(NoTorus):
+    with pytest.raises(symfpu.NoTorus):
         first_torus(LOOP, {1: np.sqrt(2 * 0.5) / LOOP.frequencies()[0]})
     found = family(LOOP, (1,), "0.6", from_energy="0.5", tolerance=1e-10)
     assert found.ending == "reached the energy asked for"
     assert found.members[0].energy == pytest.approx(0.5, rel=FIXED_ENERGY)
     for m in found.members:
         assert m.verdict == "torus"
-        assert omega(m) == pytest.approx(float(breather_at_energy(LOOP, 1, m.energy).frequency), rel=LOOSE_MEMBER)
+        assert omega(m) == pytest.approx(float(breather_at_energy(LOOP, 1, m.energy).frequency), rel=tolerances.LOOSE_MEMBER)
 
 
 @pytest.mark.long
@@ -332,21 +299,11 @@ def test_a_beginning_that_the_family_does_not_reach_is_refused():
         family(LOOP, (1,), "5", from_energy="2", tolerance=1e-10)
 
 
-@pytest.mark.long
-def test_doubtful_members_do_not_crawl_to_a_saddle():
-    """Ever more harmonics let doubtful members follow each other by ever shorter steps; some are kept, then the family ends."""
-    found = family(BARRIER, (2,), "20", from_energy="1")
-    assert re.match(r"ended at H = .* steps along the way down to 0.0\d from a doubtful member; the smallest divisor", found.ending)
-    doubtful = [m.verdict == "doubtful" for m in found.members]
-    assert doubtful == sorted(doubtful)
-    assert len(found.members) < 40
-
-
 def test_a_change_of_stability_is_located():
     (event,) = [e for e in destabilised().events if e.kind == "stability"]
     assert event.what == "instability (real > 0) begins"
     assert event.energy == pytest.approx(1.3353, rel=STABILITY)
-    below, above = (floquet(breather_at_energy(HARD, 15, event.energy * (1 + d))) for d in (-STABILITY, STABILITY))
+    below, above = (symfpu.floquet(breather_at_energy(HARD, 15, event.energy * (1 + d))) for d in (-STABILITY, STABILITY))
     assert below.stable
     assert above.instabilities == {"real > 0": 1}
     stable = [m.multipliers.stable for m in destabilised().members]
@@ -369,11 +326,11 @@ def test_a_family_turns_below_a_barrier():
         known = [m for m in found.members if omega(m) > 0.75]
         known.append(member(member_at_energy(found, "3.99", harmonic=False), multipliers=False))
         for m in known:
-            rate, amplitude = cubic_oscillator(linear**2, quadratic, mpmath.mpf(float(m.torus.positions(0.0)[1])))
+            rate, amplitude = cubic_oscillator(linear**2, quadratic, mpmath.mpf(float(m.torus.Q(0.0)[1])))
             assert omega(m) == pytest.approx(float(rate), rel=OSCILLATOR)
             assert abs(m.amplitudes[2]) == pytest.approx(abs(float(amplitude)), rel=OSCILLATOR)
     assert barrier == pytest.approx(4)
-    assert energies(found).max() < barrier * (1 + TEN_ROUNDINGS)
+    assert energies(found).max() < barrier * (1 + tolerances.TEN_ROUNDINGS)
     (turn,) = [e for e in found.events if e.kind == "fold"]
     assert turn.what == "A_2"
     assert [m.energy > turn.energy for m in known].count(True) >= 2
@@ -382,11 +339,13 @@ def test_a_family_turns_below_a_barrier():
 
 @pytest.mark.long
 def test_a_family_that_cannot_go_on_says_so():
-    """Towards the saddle the period grows without end, and so do the harmonics: the last ones that resolve it end the family."""
+    """Towards the saddle at H = 1 the period grows without end, and so do the harmonics: those that are taken end the family."""
     found = family(Chain(2, beta="-0.5"), (1,), "20", from_energy="0.1", tolerance=1e-9)
     assert found.ending.startswith(f"ended at H = {found.members[-1].energy:.7g}: ")
-    assert re.search(r"steps along the way down to 0\.0\d+ from a doubtful member; the smallest divisor there is ", found.ending)
-    assert all(m.residual < LOW_ACCURACY for m in found.members)
+    assert "::" not in found.ending
+    assert found.ending.count(": ") == 1
+    assert re.search(r"the family cannot be followed, because the last of \d+ harmonics is still \d+e-\d+ of the largest", found.ending)
+    assert all(m.residual < tolerances.LOW_ACCURACY for m in found.members)
     assert energies(found).max() < 2
     with pytest.raises(NotInFamily, match="ended at H = "):
         member_at_energy(found, "20", harmonic=False)
@@ -396,9 +355,9 @@ def test_a_family_that_cannot_go_on_says_so():
 def test_the_family_goes_on_where_its_series_ends():
     """docs/convergence.md: orbit and fold of the fixed-frequency scheme coincide at A = 1.0812, omega = 0.098352. Before it the roots of
     the truncated series approach the member of their frequency; behind it they do not."""
-    at = breather_at_amplitude(LONG, 1, "1.0812")
-    assert float(at.frequency) == pytest.approx(0.098352, abs=SIX_PLACES)
-    assert at.energy() == pytest.approx(0.00926, abs=FIVE_PLACES)
+    at = symfpu.breather_at_amplitude(LONG, 1, "1.0812")
+    assert float(at.frequency) == pytest.approx(0.098352, abs=tolerances.SIX_PLACES)
+    assert at.energy() == pytest.approx(0.00926, abs=tolerances.FIVE_PLACES)
     before = [m for m in resonant().members if m.amplitudes[1] < 0.95]
     behind = [m for m in resonant().members if m.amplitudes[1] > 1.2]
     assert before
@@ -407,8 +366,8 @@ def test_the_family_goes_on_where_its_series_ends():
     def missed(m, order):
         frequency = m.torus.frequencies[0].limit_denominator(10**14)
         try:
-            found = float(solve_amplitudes(lindstedt(LONG, (1,), (frequency,), order)).amplitudes[1])
-        except (NoRealAmplitude, DidNotConverge):
+            found = float(symfpu.solve_amplitudes(symfpu.lindstedt(LONG, (1,), (frequency,), order)).amplitudes[1])
+        except (symfpu.NoRealAmplitude, symfpu.DidNotConverge):
             return np.inf
         return abs(found / m.amplitudes[1] - 1)
 
@@ -467,21 +426,6 @@ def test_a_frequency_beyond_reach_is_not_in_the_family():
         member_at_frequency(breathers(), 5, 1)
 
 
-@pytest.mark.long
-def test_appendix_a_gives_series_of_growing_energy():
-    found = whole("appendix-a")
-    assert found.ending == "reached the energy asked for"
-    assert (np.diff(energies(found)) > 0).all()
-    assert energies(found)[0] == pytest.approx(0.002, rel=FIXED_ENERGY)
-    assert energies(found)[-1] == pytest.approx(0.01, rel=FIXED_ENERGY)
-    for m in found.members:
-        assert m.torus.order == 4
-        assert m.energy == pytest.approx(float(m.torus.energy()), rel=LAST_DIGIT)
-        assert m.residual == m.torus.residual()
-    refined = member_at_energy(found, "0.005", harmonic=False)
-    assert float(refined.energy()) == pytest.approx(0.005, rel=FIXED_RATIO)
-
-
 def test_appendix_a_ends_honestly():
     found = family(Chain(8, beta="0.3"), (1,), "50", method="appendix-a", order=4)
     last = found.members[-1].energy
@@ -491,49 +435,41 @@ def test_appendix_a_ends_honestly():
     assert "doubtful" in repr(found)
 
 
-BAD = {
-    "method": ({"method": "newton"}, "method"),
-    "order without": ({"method": "appendix-a"}, "order"),
-    "order with arclength": ({"order": 4}, "order"),
-    "order no integer": ({"method": "appendix-a", "order": 2.5}, "order"),
-    "multipliers with appendix-a": ({"method": "appendix-a", "order": 4, "seeds": (1,), "multipliers": True}, "multipliers"),
-    "multipliers of two seeds": ({"multipliers": True}, "multipliers"),
-    "ratio of one seed": ({"amplitude_ratio": {1: 1}}, "amplitude_ratio"),
-    "empty ratio": ({"amplitude_ratio": {}}, "amplitude_ratio"),
-    "negative ratio": ({"energy_ratio": {1: 1, 2: -1}}, "energy_ratio"),
-    "ratio of words": ({"energy_ratio": {1: 1, 2: "x"}}, "energy_ratio"),
-    "ratio of other seeds": ({"energy_ratio": {1: 1, 3: 1}}, "energy_ratio"),
-    "ratio without seeds": ({"amplitude_ratio": (1, 2)}, "amplitude_ratio"),
-    "both ratios": ({"amplitude_ratio": {1: 1, 2: 1}, "energy_ratio": {1: 1, 2: 1}}, "energy_ratio"),
-    "energies in the wrong order": ({"from_energy": "0.2"}, "from_energy"),
-    "equal energies": ({"from_energy": "0.1"}, "from_energy"),
-    "a negative beginning": ({"from_energy": -1}, "from_energy"),
-    "a beginning of words": ({"from_energy": "x"}, "from_energy"),
-    "a negative goal": ({"to_energy": -1}, "to_energy"),
-    "no goal": ({"to_energy": 0, "from_energy": "0.1"}, "to_energy"),
-    "a goal of words": ({"to_energy": "x"}, "to_energy"),
-    "a goal beyond doubles": ({"to_energy": "1e400"}, "to_energy"),
-    "a goal below doubles": ({"to_energy": "1e-400"}, "to_energy"),
-    "no members": ({"members": 0}, "members"),
-    "members no integer": ({"members": 2.5}, "members"),
-    "seed outside": ({"seeds": (1, 8)}, "seeds"),
-    "no seeds": ({"seeds": ()}, "seeds"),
-    "a seed twice": ({"seeds": (1, 1)}, "seeds"),
-    "tolerance": ({"tolerance": 2}, "tolerance"),
-}
+@each(
+    method=["newton"],
+    order=[4],
+    multipliers=[True],
+    amplitude_ratio=[{1: 1}, {}, (1, 2)],
+    energy_ratio=[{1: 1, 2: -1}, {1: 1, 2: "x"}, {1: 1, 3: 1}],
+    from_energy=["0.2", "0.1", -1, "x"],
+    to_energy=[-1, "x", "1e400", "1e-400"],
+    members=[0, 2.5],
+    seeds=[(1, 8), (), (1, 1)],
+    tolerance=[2],
+)
+def test_bad_arguments_are_named(name, value):
+    refused(family, name, value, chain=PAIR, seeds=(1, 2), to_energy="0.1")
 
 
-@pytest.mark.parametrize("case", BAD)
-def test_bad_arguments_are_named(case):
-    changes, named = BAD[case]
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        ({"method": "appendix-a"}, "order"),
+        ({"method": "appendix-a", "order": 2.5}, "order"),
+        ({"method": "appendix-a", "order": 4, "multipliers": True}, "multipliers"),
+        ({"amplitude_ratio": {1: 1, 2: 1}, "energy_ratio": {1: 1, 2: 1}}, "energy_ratio"),
+        ({"to_energy": 0, "from_energy": "0.1"}, "to_energy"),
+    ],
+)
+def test_arguments_that_do_not_go_together_are_named(options, named):
     with pytest.raises(InputError, match=rf"^{named} = "):
-        family(**({"chain": PAIR, "seeds": (1, 2), "to_energy": "0.1"} | changes))
+        family(**{"chain": PAIR, "seeds": (1,), "to_energy": "0.1"} | options)
 
 
 def test_progress_is_told():
     lines = []
     found = family(ROUND, (3,), "0.1", from_energy="0.05", progress=lambda label, done: lines.append((label, done)))
-    assert isinstance(found, Family)
+    assert isinstance(found, symfpu.Family)
     assert lines[0][0].startswith("member 1: ")
     done = [part for _, part in lines]
     assert done == sorted(done)

@@ -1,23 +1,15 @@
 """Folders of families: stopped, killed, damaged and gone on with."""
 
-import json
 import os
 import re
 import shutil
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError, RunInterrupted
-from symfpu.families.following import family
-from symfpu.files.archive import BundleError
-from symfpu.refinement.ring_tori import RefinedRingTorus
-from symfpu.refinement.tori import RefinedTorus
+from symfpu import BundleError, Chain, InputError, RefinedTorus, family
+from symfpu.errors import RunInterrupted
+from symfpu.files.sealed import document_in, write_sealed
 from tests.bundles.test_bundle import same
 from tests.families.cases import ROUND, RUNS, whole
 from tests.tolerances import FIXED_ENERGY
@@ -31,7 +23,7 @@ def alike(found, other):
     """Members bit for bit: tori, energies, residuals, multipliers; and the events."""
     assert len(found.members) == len(other.members)
     for m, n in zip(found.members, other.members, strict=True):
-        if isinstance(m.torus, RefinedTorus | RefinedRingTorus):
+        if isinstance(m.torus, RefinedTorus | RefinedTorus):
             assert same(m.torus, n.torus)
         else:
             assert same((m.torus.frequencies, m.torus.cosines), (n.torus.frequencies, n.torus.cosines))
@@ -93,18 +85,12 @@ def test_a_family_goes_on_to_another_goal(tmp_path):
         family(ROUND, (3,), "0.000009", folder=tmp_path)
 
 
-def test_a_family_of_version_01_is_gone_on_with(tmp_path):
-    """It began at about a thousandth of its goal and ended beyond it; its members stay, and the goal is met."""
-    folder, start = Path(__file__).parents[1] / "data" / "version-0.1" / "family", Chain(8, alpha="0.33")
+def test_a_record_without_a_digest_is_refused(tmp_path):
+    """As records were that no release has written."""
+    folder = Path(__file__).parents[1] / "data" / "version-0.1" / "family"
     shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
-    facts = json.loads((folder.parent / "facts.json").read_text())["family"]["energies"]
-    known = family(start, (1,), "0.01", folder=tmp_path)
-    assert known.ending == "reached the energy asked for"
-    assert energies(known)[:-1] == pytest.approx([float(e) for e in facts[:-1]], rel=FIXED_ENERGY)
-    assert energies(known)[-1] == pytest.approx(0.01, rel=FIXED_ENERGY)
-    on = family(start, (1,), "0.012", folder=tmp_path)
-    assert energies(on)[:-1] == pytest.approx([float(e) for e in facts], rel=FIXED_ENERGY)
-    assert energies(on)[-1] == pytest.approx(0.012, rel=FIXED_ENERGY)
+    with pytest.raises(InputError, match=r"^folder = .*family\.json is damaged, or of an older"):
+        family(Chain(8, alpha="0.33"), (1,), "0.01", folder=tmp_path)
 
 
 class Killed(BaseException):
@@ -126,22 +112,6 @@ def test_a_family_stopped_while_writing_goes_on(moment, tmp_path, monkeypatch):
         patched.setattr(os, "replace", stopping)
         with pytest.raises(Killed):
             family(*arguments, **options, folder=tmp_path)
-    alike(family(*arguments, **options, folder=tmp_path), whole("breather"))
-
-
-@pytest.mark.long
-def test_a_killed_family_goes_on(tmp_path):
-    code = (
-        "from symfpu.chain.chain import Chain; from symfpu.families.following import family\n"
-        "family(Chain(8, alpha='0.4', beta='0.1'), (3,), '0.1', multipliers=True, from_energy='0.001', folder='.')"
-    )
-    process = subprocess.Popen([sys.executable, "-c", code], cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(Path.cwd())})
-    while process.poll() is None and not (tmp_path / "member-0003.symfpu").exists():
-        time.sleep(0.001)
-    process.send_signal(signal.SIGKILL)
-    process.wait()
-    assert (tmp_path / "family.json").exists()
-    arguments, options = RUNS["breather"]
     alike(family(*arguments, **options, folder=tmp_path), whole("breather"))
 
 
@@ -184,13 +154,27 @@ def test_a_folder_of_another_family_is_refused(differs, begun):
 
 
 def changed(**entries):
-    return lambda text: json.dumps(json.loads(text) | entries)
+    """A record with other entries and with the digest of these: no run writes it."""
+
+    def written(text, path):
+        document = document_in(text.encode()) | entries
+        write_sealed(path, document)
+        return path.read_text()
+
+    return written
+
+
+def flipped(text, path):
+    """One bit in a number of the record."""
+    place = text.index('"largest": ') + len('"largest": ')
+    return text[:place] + chr(ord(text[place]) ^ 1) + text[place + 1 :]
 
 
 DAMAGE = {
-    "empty": lambda text: "",
-    "half": lambda text: text[: len(text) // 2],
-    "a list": lambda text: "[]",
+    "empty": lambda text, path: "",
+    "half": lambda text, path: text[: len(text) // 2],
+    "a list": lambda text, path: "[]",
+    "a flipped bit": flipped,
     "no plan": changed(plan=None),
     "a plan of words": changed(plan="x"),
     "a plan without seeds": changed(plan={}),
@@ -202,20 +186,10 @@ DAMAGE = {
 }
 
 
-def test_resonances_of_older_records_are_known_to_be_interpolated(copy):
-    """Records did not say so when no resonance was located."""
-    (arguments, options), record = RUNS["breather"], json.loads((copy / "family.json").read_text())
-    fold = {"kind": "fold", "what": "H", "after": 1, "energy": 0.05, "value": 0.05, "mode": 0, "harmonic": []}
-    record["events"] = [fold, fold | {"kind": "resonance", "what": "divisor", "mode": 7, "harmonic": [5]}]
-    (copy / "family.json").write_text(json.dumps(record))
-    known = family(*arguments, **options, members=3, folder=copy).events
-    assert [(e.kind, e.interpolated) for e in known] == [("fold", False), ("resonance", True)]
-
-
 @pytest.mark.parametrize("damage", DAMAGE)
 def test_a_damaged_record_is_refused(damage, copy):
     record = copy / "family.json"
-    record.write_text(DAMAGE[damage](record.read_text()))
+    record.write_text(DAMAGE[damage](record.read_text(), record))
     arguments, options = RUNS["breather"]
     with pytest.raises(InputError, match=r"^folder = .*family\.json is damaged"):
         family(*arguments, **options, folder=copy)
@@ -235,6 +209,24 @@ def test_damaged_missing_and_foreign_members_are_refused(copy, tmp_path_factory)
     file.write_bytes((other / "member-0000.symfpu").read_bytes())
     with pytest.raises(InputError, match=r"^folder = .*member-0001\.symfpu is another torus"):
         family(*arguments, **options, folder=copy)
+
+
+def test_a_second_run_in_one_folder_is_refused(tmp_path):
+    def second(label, done):
+        with pytest.raises(InputError, match=r"^folder = .*process [0-9]+ on .*the other family"):
+            family(ROUND, (3,), "0.02", folder=tmp_path)
+        heard.append(label)
+
+    heard = []
+    family(ROUND, (3,), "0.02", members=1, folder=tmp_path, progress=second)
+    assert heard
+    assert {file.name for file in tmp_path.iterdir()} == {"family.json", "member-0000.symfpu"}
+
+
+def test_a_record_that_might_never_end_is_not_read(tmp_path):
+    os.mkfifo(tmp_path / "family.json")
+    with pytest.raises(InputError, match=r"^folder = .*allowed is a regular file"):
+        family(ROUND, (3,), "0.1", folder=tmp_path)
 
 
 def test_a_folder_that_is_a_file_is_refused(tmp_path):

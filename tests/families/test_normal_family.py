@@ -6,18 +6,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.breathers.floquet import floquet
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
+import symfpu
+from symfpu import Chain, breather_at_amplitude, normal_family, normal_modes, refine_at_amplitudes, torus_at_amplitudes
 from symfpu.families.normal_events import RESONANCE, STABILITY, discriminant
-from symfpu.families.normal_family import normal_family
 from symfpu.families.normal_zeros import Bracket, collision
-from symfpu.normal.resonances import PARAMETRIC, SUM, ParametricResonance
-from symfpu.normal.search import normal_modes
-from symfpu.refinement.tori import refine_at_amplitudes
-from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.normal.resonances import PARAMETRIC, SUM
 from tests.normal.test_meeting import EDGES
+from tests.refusals import each, refused
 from tests.tolerances import BESIDE_A_CROSSING, BESIDE_AN_ONSET, NARROW_EVENT, NORMAL_CONVERGED, ONSET
 
 HYPERBOLIC = Chain(8, beta=1)
@@ -49,7 +44,7 @@ def test_a_breather_loses_its_stability_where_a_multiplier_leaves_the_circle():
     assert (event.resonance.kind, event.resonance.modes, event.resonance.harmonic) == (PARAMETRIC, (1,), (1,))
     for side in (-1, 1):
         A = event.amplitudes[2] + side * BESIDE_AN_ONSET
-        assert floquet(breather_at_amplitude(Chain(4, alpha="0.5"), 2, repr(A))).stable == (side < 0)
+        assert symfpu.floquet(breather_at_amplitude(Chain(4, alpha="0.5"), 2, repr(A))).stable == (side < 0)
 
 
 @pytest.mark.long
@@ -113,25 +108,9 @@ def test_a_distance_is_that_of_the_list():
     found = normal_modes(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"))
     for resonance in found.resonances:
         assert resonance.distance_of(found) == pytest.approx(resonance.distance, abs=NORMAL_CONVERGED)
-    assert ParametricResonance("own", (3,), (0,), 0.0).left_of({3: 1.5}) == 1.5
+    assert symfpu.ParametricResonance("own", (3,), (0,), 0.0).left_of({3: 1.5}) == 1.5
 
 
-@pytest.mark.parametrize(
-    ("arguments", "options", "message"),
-    [
-        (({3: "1"},), {}, "^amplitudes"),
-        (({2: "x"},), {}, "^amplitudes"),
-        (({2: "1"},), {"members": 1}, "^members"),
-        (({2: "1"},), {"modes": [2]}, "^modes"),
-        (({2: "1"},), {"resonance_length": -1}, "^resonance_length"),
-    ],
-    ids=str,
-)
-def test_arguments_out_of_range_are_refused(arguments, options, message):
-    with pytest.raises(InputError, match=message):
-        normal_family(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), *arguments, **options)
-
-
-def test_what_is_no_solution_is_refused():
-    with pytest.raises(InputError, match="solution"):
-        normal_family(3, {2: "1"})
+@each(amplitudes=[{3: "1"}, {2: "x"}], members=[1], modes=[[2]], resonance_length=[-1], solution=[3])
+def test_arguments_out_of_range_are_refused(name, value):
+    refused(normal_family, name, value, solution=breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), amplitudes={2: "1"})

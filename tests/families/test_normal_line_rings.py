@@ -2,27 +2,18 @@
 
 import pytest
 
-from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.breathers.floquet import floquet
-from symfpu.chain.chain import Chain
-from symfpu.cli.main import main
-from symfpu.errors import InputError, RunInterrupted
+import symfpu
+from symfpu import Chain, InputError, breather_at_amplitude, floquet, lindstedt, normal_family, normal_modes, refine, unfold
+from symfpu.errors import RunInterrupted
 from symfpu.families.normal_events import STABILITY
-from symfpu.families.normal_family import normal_family
 from symfpu.normal.resonances import SUM
-from symfpu.normal.search import normal_modes
-from symfpu.refinement.tori import refine
-from symfpu.refinement.travelling_breather import travelling_breather
-from symfpu.saved.results import load, save
-from symfpu.series.travelling import travelling_waves
-from symfpu.tori.ring_torus import travelling_torus, unfold
 from tests.tolerances import BESIDE_AN_ONSET, EVENT_BY_DIGITS, NORMAL_CONVERGED
 
 RING = Chain(8, alpha="0.3", beta="0.5", ends="periodic")
 
 
 def wave(A):
-    return travelling_breather(RING, 2, amplitude=A)
+    return symfpu.travelling_breather(RING, 2, amplitude=A)
 
 
 def test_a_travelling_wave_loses_its_stability_where_a_multiplier_leaves_the_circle():
@@ -50,8 +41,8 @@ def test_standing_waves_have_the_onset_of_fixed_ends():
 
 
 def pair():
-    series = travelling_waves(Chain(8, potential="toda:1/2", ends="periodic"), (1, -3), ("0.7661", "1.8486"), 6)
-    return refine(travelling_torus(series))
+    series = lindstedt(Chain(8, potential="toda:1/2", ends="periodic"), (1, -3), ("0.7661", "1.8486"), 6)
+    return refine(symfpu.solve_amplitudes(series))
 
 
 @pytest.mark.long
@@ -85,14 +76,3 @@ def test_an_interrupted_line_of_a_ring_goes_on(tmp_path, stands):
     fixed = breather_at_amplitude(Chain(8, potential=first.chain.potential), 2, repr(float(first.amplitudes[2])))
     with pytest.raises(InputError, match="its ends differs"):
         normal_family(fixed, **line, folder=tmp_path)
-
-
-@pytest.mark.long
-def test_the_line_of_a_ring_is_drawn_kept_and_a_verb(tmp_path, capsys):
-    found = normal_family(wave("1"), {2: "1.3"}, members=2)
-    assert found.plot() is not None
-    again = load(save(tmp_path / "line", found)).result
-    assert again.events == found.events
-    file = str(save(tmp_path / "wave", wave("1")))
-    assert main(["stability", file, "--to-amplitudes", "1.3", "--members", "2"]) == 0
-    assert "sigma_-3 + sigma_-1 = (2).omega" in capsys.readouterr().out

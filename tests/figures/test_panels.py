@@ -1,13 +1,15 @@
-"""Panels and curves: what they refuse, how they are drawn."""
+"""Panels, curves and pictures: what they refuse, how they are drawn, and which panels a family has."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from symfpu.errors import InputError
-from symfpu.figures.drawing import plot_panel
+from symfpu import Chain, InputError, family
+from symfpu.figures.drawing import plot_panel, plot_spectrum, save_panel
+from symfpu.figures.family import draw_family
 from symfpu.figures.panels import Curve, Panel
 
 X = np.array([1.0, 2.0, 4.0])
@@ -66,38 +68,9 @@ def test_curves_without_a_group_differ_in_look(ax):
     assert len(ax.get_legend().get_texts()) == 9
 
 
-def test_in_a_group_each_style_has_a_label_of_its_own(ax):
-    curves = [Curve(f"{style} {i}", X, X, style, group=0) for style in ("marks", "line") for i in range(2)]
-    plot_panel(panel(*curves), ax)
-    assert len({line.get_color() for line in ax.get_lines()}) == 1
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["marks 0", "line 0"]
-
-
-def test_a_curve_without_a_label_is_not_in_the_legend(ax):
-    plot_panel(panel(Curve("", X, X, name="order")), ax)
-    assert ax.get_legend() is None
-    assert len(ax.get_lines()) == 1
-
-
-def test_a_legend_goes_where_the_panel_says():
-    curves = [Curve(f"q = {i}", X, X * (i + 1)) for i in range(8)]
-    beside, inside = Figure().add_subplot(), Figure().add_subplot()
-    plot_panel(panel(*curves), beside)
-    plot_panel(panel(*curves, legend="lower right", legend_columns=2), inside)
-    assert beside.get_legend().get_bbox_to_anchor().x0 >= beside.bbox.x1
-    assert inside.get_legend().get_bbox_to_anchor().x0 < inside.bbox.x1
-    assert (beside.get_legend()._ncols, inside.get_legend()._ncols) == (1, 2)
-
-
 def test_limits_of_a_panel_are_those_of_its_axes(ax):
     plot_panel(panel(Curve("a", X, X), log_y=False, bottom=-1.0, top=7.0, x_limits=(0.5, 9.0)), ax)
     assert (ax.get_ylim(), ax.get_xlim()) == ((-1.0, 7.0), (0.5, 9.0))
-
-
-def test_a_falling_axis_has_small_values_on_top(ax):
-    plot_panel(panel(Curve("a", X, X), log_y=False, falling=True), ax)
-    bottom, top = ax.get_ylim()
-    assert bottom > top
 
 
 @pytest.mark.parametrize(("log_x", "middle"), [(True, 2.0), (False, 2.5)])
@@ -119,8 +92,64 @@ def test_beads_differ_in_marker_and_keep_their_size(ax):
     assert [line.get_linestyle() for line in lines] == ["-"] * 5 + ["--"] * 2  # where colours come round
 
 
-def test_of_points_on_each_other_the_first_are_the_largest(ax):
-    plot_panel(panel(*(Curve(str(i), X, X, "points") for i in range(3))), ax)
-    sizes = [line.get_markersize() for line in ax.get_lines()]
-    assert sizes == sorted(sizes, reverse=True)
-    assert len(set(sizes)) == 3
+@lru_cache
+def unstable():
+    return family(Chain(6, beta=1), (5,), "3", from_energy="0.05", multipliers=True)
+
+
+@lru_cache
+def pair():
+    """A fold of omega_2 is on its way."""
+    return family(Chain(8, alpha="0.3"), (1, 2), "0.005", from_energy="0.001")
+
+
+@pytest.mark.long
+def test_there_is_a_panel_more_with_multipliers(tmp_path, monkeypatch):
+    """Drawn, and not written: tests of the command line do that."""
+
+    def drawn(panel, title, stem):
+        ax = Figure().add_subplot()
+        assert panel(ax) is ax
+        titles.append((title, ax.figure.get_suptitle()))
+        return [stem.with_suffix(".png"), stem.with_suffix(".pdf")]
+
+    monkeypatch.setattr("symfpu.figures.family.save_panel", drawn)
+    titles: list[tuple[str, str]] = []
+    names = {"shifts", "amplitudes", "spectra"}
+    for found, panels in ((pair(), names), (unstable(), names | {"multipliers"})):
+        paths = draw_family(found, tmp_path, stem=f"seeds-{len(found.seeds)}")
+        expected = {f"seeds-{len(found.seeds)}-{panel}.{suffix}" for panel in panels for suffix in ("png", "pdf")}
+        assert {path.name for path in paths} == expected
+    assert titles[0] == ("Energy against relative frequency shift", "N=8, alpha=0.3, seeds 1, 2, H=0.001 .. 0.005")
+    assert len(set(titles)) == 7
+
+
+def test_spectrum_leaves_out_what_a_logarithm_cannot_show(ax):
+    assert plot_spectrum(np.array([1.0, 0.0, 1e-8]), ax, label="order 4") is ax
+    (line,) = ax.get_lines()
+    assert line.get_xdata().tolist() == [1, 3]
+    assert line.get_ydata().tolist() == [1.0, 1e-8]
+    assert line.get_label() == "order 4"
+    assert (ax.get_xlabel(), ax.get_yscale()) == ("$q$", "log")
+
+
+def test_modes_below_the_floor_are_not_drawn(ax):
+    plot_spectrum(np.array([1.0, 1e-8, 1e-16]), ax, floor=np.array([1e-20, 1e-8, 1e-20]))
+    assert ax.get_lines()[0].get_xdata().tolist() == [1, 3]
+    plot_spectrum(np.array([1.0, 1e-8, 1e-16]), ax, floor=1e-10)
+    assert ax.get_lines()[1].get_xdata().tolist() == [1, 2]
+
+
+def test_a_panel_is_written_as_png_and_pdf(tmp_path):
+    paths = save_panel(lambda ax: plot_spectrum(np.array([1.0, 0.1]), ax), "title", tmp_path / "panel")
+    assert [path.suffix for path in paths] == [".png", ".pdf"]
+    assert paths[0].read_bytes().startswith(b"\x89PNG")
+    assert paths[1].read_bytes().startswith(b"%PDF")
+
+
+def test_the_style_does_not_leak(tmp_path):
+    import matplotlib as mpl
+
+    before = dict(mpl.rcParams)
+    save_panel(lambda ax: ax, "title", tmp_path / "panel")
+    assert dict(mpl.rcParams) == before

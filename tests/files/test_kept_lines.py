@@ -1,12 +1,14 @@
-"""The file of a long run: entries come back, a cut line is left out, other files are refused."""
+"""Lines that are kept as they come: whole ones count, a cut one is left out, changed ones are found by their checksum."""
 
-import json
+import os
+import random
 import resource
 
 import pytest
 
-from symfpu.errors import InputError
-from symfpu.files.kept_lines import FileFull, KeptLines
+from symfpu import FileFull, InputError
+from symfpu.files.kept_lines import KeptLines, entry_of
+from symfpu.files.sealed import document_in, read_bytes, write_sealed
 
 
 class Numbers(KeptLines):
@@ -38,7 +40,7 @@ def test_entries_come_back_and_a_cut_line_is_left_out(tmp_path):
     added_to(path, {"n": 1}, {"n": 2})
     path.write_text(path.read_text() + '{"n": 3')
     assert kept_in(path) == [1, 2]
-    assert [json.loads(line) for line in path.read_text().splitlines()][1:] == [{"n": 1}, {"n": 2}]
+    assert list(map(entry_of, path.read_bytes().splitlines()[1:])) == [{"n": 1}, {"n": 2}]
 
 
 def test_with_no_path_nothing_is_kept():
@@ -53,7 +55,7 @@ def test_other_files_are_refused_by_what_differs_and_left_as_they_are(tmp_path):
     before = path.read_bytes()
     with pytest.raises(InputError, match=r"that of this count.*order 1 and not 2.*another file"):
         kept_in(path, order=2)
-    with pytest.raises(InputError, match="damaged"):
+    with pytest.raises(InputError, match="it is damaged"):
         kept_in(path)
     assert path.read_bytes() == before
     with pytest.raises(InputError, match="a folder that exists"):
@@ -88,3 +90,68 @@ def test_entries_are_replaced(tmp_path):
         kept.replace([{"n": 2}])
         kept.add([{"n": 3}])
     assert kept_in(path) == [2, 3]
+
+
+def test_no_flipped_bit_changes_a_number_in_silence(tmp_path):
+    """600 bits of a file, each flipped alone: it is refused, or its last line counts as cut off."""
+    path, numbers = tmp_path / "numbers.jsonl", [10**9 + 7 * n for n in range(40)]
+    added_to(path, *[{"n": n} for n in numbers])
+    content, draw = path.read_bytes(), random.Random(5)
+    refused = 0
+    for _ in range(600):
+        place = draw.randrange(len(content))
+        changed = bytearray(content)
+        changed[place] ^= 1 << draw.randrange(8)
+        path.write_bytes(changed)
+        try:
+            assert kept_in(path) == numbers[:-1]
+            assert place == len(content) - 1, "the end of the last line"
+        except InputError:
+            refused += 1
+            assert path.read_bytes() == changed, "what is refused is left as it is"
+    assert refused > 590
+
+
+def test_a_changed_line_is_named(tmp_path):
+    path = tmp_path / "numbers.jsonl"
+    added_to(path, {"n": 1}, {"n": 2})
+    head, first, second = path.read_bytes().splitlines(keepends=True)
+    said = {
+        b"{}\n" + first: "that of this count",
+        head.replace(b": 1", b": 1 "): "line 1 was changed",
+        head.replace(b'"crc32": "', b'"crc32": "0'): "line 1 was changed",
+        head + first.replace(b"1", b"3", 1) + second: "line 2 was changed",
+        head + first + second.replace(b"2", b"3", 1): "line 3 was changed",
+        head + first + b"\n" + second: "line 3 was changed",
+    }
+    for content, words in said.items():
+        path.write_bytes(content)
+        with pytest.raises(InputError, match=words):
+            kept_in(path)
+
+
+DOCUMENT = {"members": 3, "amplitudes": {1: 0.1, 10: -2.5e-300, 2: 1e22}, "events": [{"kind": "fold", "harmonic": (1, -1)}]}
+READ = {"members": 3, "amplitudes": {"1": 0.1, "10": -2.5e-300, "2": 1e22}, "events": [{"kind": "fold", "harmonic": [1, -1]}]}
+
+
+def test_a_document_comes_back_as_json_holds_it(tmp_path):
+    write_sealed(tmp_path / "record", DOCUMENT)
+    assert document_in(read_bytes(tmp_path / "record", "file")) == READ
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="a regular file"):
+        read_bytes(tmp_path / "pipe", "file")
+
+
+def test_no_flipped_bit_is_taken_for_the_document(tmp_path):
+    """Of spaces between words alone, a flip may change nothing that is read."""
+    write_sealed(tmp_path / "record", DOCUMENT)
+    content, draw = (tmp_path / "record").read_bytes(), random.Random(5)
+    refused = 0
+    for _ in range(600):
+        changed = bytearray(content)
+        changed[draw.randrange(len(content))] ^= 1 << draw.randrange(8)
+        try:
+            assert document_in(bytes(changed)) == READ
+        except (ValueError, KeyError, AttributeError, TypeError):
+            refused += 1
+    assert refused > 500

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from symfpu import BandsTooNarrow, Chain, InputError, NoDiscriminant, NoTodaTorus, toda, toda_invariants, toda_torus
-from symfpu.integrable.discriminant import Edges, critical_points, edges, free_points, gauss_legendre
-from symfpu.integrable.inverse import persymmetric_matrix, ring_state
+from symfpu.integrable.discriminant import Edges, critical_points, edges, free_points
+from symfpu.integrable.inverse import ring_state
 from symfpu.integrable.quadrature import mean_rule
 from symfpu.numbers.arithmetic import MULTIPRECISION, working_digits
 from symfpu.numbers.mpfr import MPFR, in_mpf
@@ -48,14 +48,6 @@ def test_small_gaps_keep_their_relative_accuracy():
         assert abs(bands.half_widths[1] / (mpmath.mpf("1e-40") / 4) - 1) < TODA_LINEAR
 
 
-def test_gauss_legendre_is_exact_for_powers():
-    with working_digits(60):
-        nodes, weights = gauss_legendre(6, 200)
-        for power in range(12):
-            integral = (nodes**power * weights).sum()
-            assert abs(integral - (MPFR.number(Fraction(2, power + 1)) if power % 2 == 0 else 0)) < FORTY_DIGITS
-
-
 @pytest.mark.parametrize("distance", ["1e-1", "1e-4", "1e-9"])
 def test_means_over_a_gap_are_exact_beside_bands_of_any_width(distance):
     """The mean of 1/(b - x) over |x| < w is 1/sqrt(b^2 - w^2)."""
@@ -73,19 +65,6 @@ def test_a_band_of_no_width_is_refused():
     touching = Edges(nothing, nothing + 1, mpmath.mpf(1), mpmath.mpf(-1))
     with pytest.raises(BandsTooNarrow, match="gap 1"):
         mean_rule(touching, 0, MULTIPRECISION)
-
-
-def test_persymmetric_matrices_have_their_spectrum_and_symmetry():
-    with mpmath.workdps(40):
-        spectrum = MULTIPRECISION.array([-2, "-0.5", "0.25", 1, 3])
-        diagonal, squares = persymmetric_matrix(spectrum)
-        matrix = mpmath.diag(list(diagonal))
-        for k, square in enumerate(squares):
-            matrix[k, k + 1] = matrix[k + 1, k] = mpmath.sqrt(square)
-        found = sorted(mpmath.eigsy(matrix, eigvals_only=True))
-        assert max(abs(np.array(found, dtype=object) - spectrum)) < THIRTY_DIGITS
-        assert max(abs(diagonal - diagonal[::-1])) < THIRTY_DIGITS
-        assert max(abs(squares - squares[::-1])) < THIRTY_DIGITS
 
 
 @pytest.mark.parametrize("N", [2, 4])

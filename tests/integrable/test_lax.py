@@ -10,6 +10,7 @@ from symfpu import Chain, InputError, toda, toda_gaps
 from symfpu.integrable.lax import jacobi_entries, ring_edges
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION
 from tests.integrable.chains import orbit, ring_of, ring_stretches
+from tests.refusals import each, refused
 from tests.tolerances import FORTY_DIGITS, GAP, GAP_DRIFT, TODA_LINEAR
 
 A = Fraction(1, 2)
@@ -111,23 +112,16 @@ def test_orbits_of_states_have_gaps_by_state():
     assert np.array_equal(gaps, toda_gaps(Chain(5, beta=1), Q, 0 * Q, a="1/3"))
 
 
+@each(a=[0], Q=[[0, 0], ["x", 0, 0]], P=[[[0, 0, 0]], [np.inf, 0, 0]], digits=[0], chain=[Chain("N", alpha=1), 4])
+def test_bad_input_is_refused_by_name(name, value):
+    refused(toda_gaps, name, value, chain=Chain(4, alpha=1), Q=[0, 0, 0], P=[0, 0, 0])
+
+
 @pytest.mark.parametrize(
-    ("arguments", "options", "name"),
-    [
-        ((Chain(4, beta=1), [0, 0, 0], [0, 0, 0]), {}, "a"),
-        ((Chain(4, alpha=1), [0, 0, 0], [0, 0, 0]), {"a": 0}, "a"),
-        ((Chain(4, alpha=1), [0, 0], [0, 0]), {}, "Q"),
-        ((Chain(4, alpha=1), [0, 0, 0], [[0, 0, 0]]), {}, "Q, P"),
-        ((Chain(4, alpha=1), ["x", 0, 0], [0, 0, 0]), {}, "Q"),
-        ((Chain(4, alpha=1), [np.nan, 0, 0], [0, 0, 0]), {}, "a r"),
-        ((Chain(4, alpha=1), [1e4, 0, 0], [0, 0, 0]), {}, "a r"),
-        ((Chain(4, alpha=1), [0, 0, 0], [np.inf, 0, 0]), {}, "P"),
-        ((Chain(4, alpha=1), [0, 0, 0], [0, 0, 0]), {"digits": 0}, "digits"),
-        ((Chain("N", alpha=1), [0], [0]), {}, "chain"),
-        ((4, [0, 0, 0], [0, 0, 0]), {}, "chain"),
-    ],
+    ("chain", "Q", "name"),
+    [(Chain(4, beta=1), [0, 0, 0], "a"), (Chain(4, alpha=1), [np.nan, 0, 0], "a r"), (Chain(4, alpha=1), [1e4, 0, 0], "a r")],
 )
-def test_bad_input_is_refused_by_name(arguments, options, name):
+def test_laws_and_stretches_out_of_range_are_refused(chain, Q, name):
     with pytest.raises(InputError) as caught:
-        toda_gaps(*arguments, **options)
+        toda_gaps(chain, Q, [0, 0, 0])
     assert caught.value.argument == name

@@ -7,19 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import (
-    Chain,
-    alignment_indices,
-    excitation_sequence,
-    floquet,
-    lindstedt,
-    periodic_orbit,
-    refine,
-    solve_amplitudes,
-    toda,
-    toda_gaps,
-    toda_torus,
-)
+import symfpu
+from symfpu import Chain, alignment_indices, floquet, lindstedt, periodic_orbit, refine, solve_amplitudes, toda, toda_gaps, toda_torus
 from tests.tolerances import EPS, FLOQUET_PHASE, ROUNDING, TODA_RATE, TWENTY_DIGITS
 
 # seeds and actions at unit scale; the last column has the scales of actions at which errors are taken
@@ -87,7 +76,7 @@ def test_modes_are_excited_as_in_the_fpu_chain(N):
         series = lindstedt(Chain(N, potential=toda(1)), seeds, order=3, ring="nested")
         orders = [{int(q) + 1 for q in np.flatnonzero(np.asarray(table.nonzero).any(axis=0))} for table in series.coordinates]
         seen: set[int] = set()
-        for k, modes in enumerate(excitation_sequence(N, seeds, 3)):
+        for k, modes in enumerate(symfpu.excitation_sequence(N, seeds, 3)):
             assert orders[k] - seen == set(modes)
             seen |= orders[k]
 

@@ -6,8 +6,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, frequency_shift, toda, toda_gaps, toda_invariants, toda_torus
+from symfpu import Chain, InputError, toda, toda_gaps, toda_invariants, toda_torus
 from tests.integrable.chains import orbit, ring_of, tangent_map
+from tests.refusals import each, refused
 from tests.tolerances import FLOQUET_OF_TODA, FORTY_DIGITS, GAP, LAST_OF_TWELVE, RETURN_OF_TODA, SMALL_ACTION, THIRTY_DIGITS, TODA_LINEAR
 
 CHAIN, SMALL = (Chain(N, potential=toda("1/2")) for N in (8, 5))
@@ -58,16 +59,7 @@ def test_small_actions_give_the_harmonic_chain_and_the_normal_form(ends):
         assert abs((torus.energy - first) / second - 1) < TODA_LINEAR
 
 
-def test_the_shift_is_the_closed_form_of_the_chain_that_agrees_to_fourth_order():
-    torus = toda_torus(CHAIN, (2,), actions=("1e-10",), digits=25)
-    linear = CHAIN.frequencies()[1]
-    amplitude = float(mpmath.sqrt(2 * torus.actions[2] / linear))
-    with mpmath.workdps(40):
-        shift = torus.frequencies[2] - 2 * mpmath.sinpi(mpmath.mpf(2) / 16)
-    closed = frequency_shift(Chain(8, alpha="1/2", beta="1/6"), {2: amplitude})[2]
-    assert float(shift) == pytest.approx(closed, rel=TODA_LINEAR)
-
-
+@pytest.mark.long
 @pytest.mark.parametrize("ends", ["fixed", "periodic"])
 def test_frequencies_are_derivatives_of_the_energy_by_the_actions(ends):
     step, chain = mpmath.mpf("1e-16"), Chain(4, potential=toda("1/2"), ends=ends)
@@ -80,6 +72,7 @@ def test_frequencies_are_derivatives_of_the_energy_by_the_actions(ends):
             assert abs((up - down) / (2 * step) - torus.frequencies[q]) < THIRTY_DIGITS
 
 
+@pytest.mark.long
 def test_normal_frequencies_are_the_limit_of_an_open_gap():
     torus = toda_torus(SMALL, (1,), actions=("0.1",), digits=20)
     nearly = toda_torus(SMALL, (1, 3), actions=("0.1", "1e-12"), digits=20)
@@ -177,12 +170,6 @@ def test_normal_frequencies_are_floquet_exponents_of_breathers(N, seed, ends):
             assert abs(multipliers - value).min() < FLOQUET_OF_TODA
 
 
-def test_gaps_but_those_of_the_seeds_are_closed():
-    Q, P = toda_torus(CHAIN, (2, 5), actions=("0.3", "0.1")).state()
-    gaps = toda_gaps(CHAIN, Q.astype(float), P.astype(float))
-    assert [q for q in range(1, 8) if gaps[q - 1] > GAP] == [2, 5]
-
-
 @pytest.mark.parametrize("action", ["1e-30", "8"])
 def test_from_tiny_to_large_actions(action):
     torus = toda_torus(SMALL, (1,), actions=(action,), digits=20)
@@ -203,27 +190,15 @@ def test_four_seeds_of_a_long_chain():
     assert max(abs(found.frequencies[q - 1] - torus.frequencies[q]) for q in torus.seeds) < FORTY_DIGITS
 
 
-@pytest.mark.parametrize(
-    ("seeds", "options", "name"),
-    [
-        ((1,), {}, "frequencies, actions"),
-        ((1,), {"frequencies": ("0.4",), "actions": ("1",)}, "frequencies, actions"),
-        ((1,), {"frequencies": ("0.39",)}, "frequencies, omega_1"),
-        ((1, 2), {"actions": ("0.1",)}, "actions"),
-        ((1,), {"actions": "1"}, "actions"),
-        ((1,), {"actions": (0,)}, "actions"),
-        ((1,), {"actions": ("x",)}, "actions"),
-        ((1, 1), {"actions": (1, 1)}, "seeds"),
-        ((8,), {"actions": (1,)}, "seeds"),
-        ((1,), {"actions": (1,), "a": 0}, "a"),
-        ((1,), {"actions": (1,), "digits": 0}, "digits"),
-        ((1,), {"actions": (1,), "digits": 10**6}, "digits"),
-    ],
-)
-def test_bad_input_is_refused_by_name(seeds, options, name):
-    with pytest.raises(InputError) as caught:
-        toda_torus(CHAIN, seeds, **options)
-    assert caught.value.argument == name
+@each(actions=["1", (0,), ("x",), ("0.1", "0.2")], seeds=[(1, 1), (8,)], a=[0], digits=[0, 10**6])
+def test_bad_input_is_refused_by_name(name, value):
+    refused(toda_torus, name, value, chain=CHAIN, seeds=(1,), actions=(1,))
+
+
+@pytest.mark.parametrize("options", [{}, {"frequencies": ("0.4",), "actions": ("1",)}, {"frequencies": ("0.39",)}])
+def test_frequencies_or_actions_are_asked_for(options):
+    with pytest.raises(InputError, match=r"^frequencies, "):
+        toda_torus(CHAIN, (1,), **options)
 
 
 def test_a_ring_of_two_and_states_that_are_not_there_are_refused():

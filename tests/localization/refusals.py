@@ -2,7 +2,7 @@
 
 import pytest
 
-from symfpu.errors import InputError
+from symfpu import InputError
 
 
 def refused(argument, call, *arguments, **options):

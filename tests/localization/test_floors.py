@@ -6,20 +6,9 @@ from functools import lru_cache
 import mpmath
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
-from symfpu.breathers.at_energy import breather_at_energy
-from symfpu.breathers.digits import periodic_orbit_digits
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.families.following import family
-from symfpu.localization.floors import coefficient_errors, spectrum_floor
-from symfpu.localization.laws import fit_profile
-from symfpu.plots.families import family_spectra
-from symfpu.refinement.tori import refine
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.quasiperiodic import FourierTorus
+import symfpu
+from symfpu import Chain, breather_at_energy, fit_profile, lindstedt, refine, solve_amplitudes, spectrum_floor, torus_at_amplitudes
 from tests.tolerances import KNOWN_ERROR, LONG_SERIES_RESIDUAL, RELATIVE_SHIFT, SMALL_CHANGE, TWO_DIGITS, UNSEEN_TAIL
 
 # A floor is an estimate of first order, made twice as large: four times the energy of the error, and more where errors do not add up.
@@ -52,12 +41,12 @@ def orbit(case):
 
 @lru_cache
 def precise(case):
-    return periodic_orbit_digits(orbit(case), DIGITS)
+    return symfpu.periodic_orbit_digits(orbit(case), DIGITS)
 
 
 def torus_of(breather):
     harmonics = np.arange(len(breather.cosines))[:, None]
-    return FourierTorus(breather.chain, (breather.seed,), (breather.frequency,), harmonics, breather.cosines, {breather.seed: 0.0})
+    return symfpu.FourierTorus(breather.chain, (breather.seed,), (breather.frequency,), harmonics, breather.cosines, {breather.seed: 0.0})
 
 
 def rows(solution):
@@ -89,7 +78,7 @@ def require_above(floor, errors, loose=LOOSE):
     assert (floor[excited] <= loose * errors[excited]).all()
 
 
-@pytest.mark.parametrize("case", [pytest.param(case, marks=[pytest.mark.long] * (case == "alpha, large")) for case in BREATHERS])
+@pytest.mark.parametrize("case", [pytest.param(case, marks=[pytest.mark.long] * case.startswith("alpha,")) for case in BREATHERS])
 def test_floors_of_breathers_are_above_their_errors(case):
     """Harmonic balance in doubles, and Newton's method on tori, whose residuals are long doubles."""
     require_above(spectrum_floor(orbit(case)), error_energies(orbit(case), precise(case)))
@@ -101,7 +90,7 @@ def test_the_stated_case():
     """E_28 of the refined breather is rounding: 1e-50 where the truth is 3e-75. What is above the floor is right."""
     chain, seed, energy = STATED
     truth = precise("alpha, small").average_spectrum().astype(float)
-    member = family(chain, (seed,), "0.001", from_energy=energy, members=1).members[0].torus
+    member = symfpu.family(chain, (seed,), "0.001", from_energy=energy, members=1).members[0].torus
     assert truth[27] == pytest.approx(2.7e-75, rel=TWO_DIGITS)
     for solution in (orbit("alpha, small"), member):
         E, floor = solution.average_spectrum(), spectrum_floor(solution)
@@ -117,15 +106,15 @@ def test_the_stated_case():
 @pytest.mark.parametrize("case", [pytest.param(case, marks=[pytest.mark.long] * (case == "alpha, large")) for case in BREATHERS])
 def test_coefficients_know_their_errors(case):
     breather = orbit(case)
-    errors = coefficient_errors(breather)
+    errors = symfpu.coefficient_errors(breather)
     assert errors.shape == breather.cosines.shape
-    right = precise(case).cosines[: len(breather.cosines)]
+    right = precise(case).by_harmonic()[: len(breather.cosines)]
     with mpmath.workdps(DIGITS):
         off = np.abs(np.array(right) - breather.cosines).astype(float)
     assert (off <= errors).all()
     assert errors.max() < KNOWN_ERROR * breather.amplitude
     refined = refine(torus_of(breather))
-    assert coefficient_errors(refined).shape == refined.cosines.shape
+    assert symfpu.coefficient_errors(refined).shape == refined.cosines.shape
 
 
 @pytest.mark.long
@@ -135,7 +124,7 @@ def test_floors_of_series_in_doubles_are_above_their_errors(case):
     torus = solve_amplitudes(lindstedt(chain, seeds, frequencies, order))
     truth = solve_amplitudes(lindstedt(chain, seeds, frequencies, order, digits=40))
     require_above(spectrum_floor(torus), error_energies(torus, truth))
-    assert coefficient_errors(torus).shape == torus.cosines.shape
+    assert symfpu.coefficient_errors(torus).shape == torus.cosines.shape
 
 
 @pytest.mark.long
@@ -148,7 +137,7 @@ def test_floors_with_digits_are_bounds():
         floor, E = spectrum_floor(torus), torus.average_spectrum().astype(float)
         assert (floor >= error_energies(torus, truth)).all()
         assert (floor[:5] < 10.0 ** (-2 * digits + 6) * E[:5]).all()
-    few = periodic_orbit_digits(orbit("alpha, small"), 30)
+    few = symfpu.periodic_orbit_digits(orbit("alpha, small"), 30)
     floor, E = spectrum_floor(few), few.average_spectrum().astype(float)
     assert (floor >= error_energies(few, precise("alpha, small"))).all()
     assert (floor < E).all()
@@ -189,23 +178,13 @@ def test_a_resonant_divisor_leaves_its_mode_unknown():
     assert chain.linear_frequency(1) == 1
     cosines = np.zeros((6, 2))
     cosines[1, 0] = 0.1
-    torus = FourierTorus(chain, (1,), (Fraction(1, 3),), np.arange(6)[:, None], cosines, {1: 0.0})
+    torus = symfpu.FourierTorus(chain, (1,), (Fraction(1, 3),), np.arange(6)[:, None], cosines, {1: 0.0})
     assert spectrum_floor(torus)[0] > 1e20
 
 
 def test_what_has_no_spectrum_has_no_floor():
-    with pytest.raises(InputError, match=r"^solution = "):
+    with pytest.raises(symfpu.InputError, match=r"^solution = "):
         spectrum_floor(np.ones(3))
-
-
-def test_pictures_of_spectra_end_at_the_floor():
-    found = family(STATED[0], (1,), "1e-4", from_energy="5e-5")
-    ax = family_spectra(found, Figure().add_subplot())
-    for line, m in zip((ax.get_lines()[0], ax.get_lines()[-1]), (found.members[0], found.members[-1]), strict=True):
-        E, floor = m.torus.average_spectrum(), spectrum_floor(m.torus)
-        assert line.get_xdata().tolist() == (np.flatnonzero(floor < E) + 1).tolist()
-        assert line.get_ydata().tolist() == (E / E.sum())[floor < E].tolist()
-        assert max(line.get_xdata()) < 20
 
 
 def test_fits_stop_at_the_floor():
@@ -218,3 +197,38 @@ def test_fits_stop_at_the_floor():
     assert fit.modes == tuple(range(2, 13))
     assert fit.line.slope == pytest.approx(right.line.slope, rel=SMALL_CHANGE)
     assert fit_profile(chain, E, 1, power=2.0, floor=0.0).line.slope > 0.8 * right.line.slope
+
+
+def harmonic(chain, seed):
+    """A mode that moves alone, with one frequency at every amplitude."""
+    guess = torus_at_amplitudes(chain, {seed: "0.1"}, order=4)
+    with pytest.raises(symfpu.NoTorus, match="refine_at_amplitudes"):
+        refine(guess)
+    return symfpu.refine_at_amplitudes(guess, {seed: "0.1"})
+
+
+FORBIDDEN = {
+    "breather": lambda: breather_at_energy(Chain(33, beta=1), 3, "0.0353"),
+    "refined breather": lambda: refine(breather_at_energy(Chain(33, beta=1), 3, "0.0353")),
+    "series": lambda: torus_at_amplitudes(Chain(12, alpha="0.3"), {4: "0.1"}, order=6),
+    "torus": lambda: refine(torus_at_amplitudes(Chain(9, alpha="0.3", beta=1), {3: "0.1", 6: "0.1"}, order=4)),
+    "digits": lambda: symfpu.periodic_orbit_digits(breather_at_energy(Chain(9, beta=1), 3, "0.1"), 30),
+    "torus of digits": lambda: refine(torus_at_amplitudes(Chain(9, beta=1), {3: "0.1", 6: "0.05"}, order=3), digits=30),
+    "the middle mode": lambda: symfpu.breather_at_amplitude(Chain(4, alpha="0.3"), 2, "0.1"),
+    "the middle mode by its amplitude": lambda: harmonic(Chain(4, alpha="0.3"), 2),
+    "two bonds": lambda: harmonic(Chain(2, alpha="0.3"), 1),
+}
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", FORBIDDEN)
+def test_modes_that_the_couplings_forbid_are_zero_and_have_no_floor(name):
+    """Those of no signed sum of seeds: rounding made energies above their floors of them."""
+    solution = FORBIDDEN[name]()
+    chain = solution.chain
+    model = "beta" if chain.potential.even else "alpha"
+    reached = {q for modes in symfpu.reachable_modes(chain.N, solution.seeds, 2 * chain.N, model=model) for q in modes}
+    energies = np.array(solution.average_spectrum(), dtype=float)
+    assert {int(q) + 1 for q in np.flatnonzero(energies)} <= reached
+    assert {int(q) + 1 for q in np.flatnonzero(spectrum_floor(solution))} <= reached
+    assert energies[solution.seeds[0] - 1] > 0

@@ -3,12 +3,7 @@
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.chain.propagation import excitation_sequence
-from symfpu.dynamics.orbits import integrate
-from symfpu.errors import InputError
-from symfpu.localization.growth import growth_exponents
-from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
+from symfpu import Chain, excitation_sequence, fpu_trajectory, growth_exponents, integrate, packet_amplitudes
 from symfpu.paper.printed import APPENDIX_F
 from tests.localization.refusals import refused
 from tests.tolerances import FIRST_ORDER_THEORY, GROWTH_EXPONENT, LEAST_SQUARES, SLOPE, THOUSAND_ROUNDINGS, TWO_DIGITS
@@ -150,6 +145,7 @@ def test_the_exponents_of_the_paper_are_those_of_a_window_over_both_stages():
 def test_bad_records_of_growth_are_refused():
     t, E = np.arange(1.0, 11.0), np.ones((10, 3))
     groups = [(1,), (2,), (3,)]
+    refused("chain", growth_exponents, 7, t, E, groups)
     refused("averages", growth_exponents, CHAIN, t, None, groups)
     refused("averages", growth_exponents, CHAIN, t, E[:, :2], groups)
     refused("averages", growth_exponents, CHAIN, t, E[:9], groups)
@@ -163,8 +159,3 @@ def test_bad_records_of_growth_are_refused():
         refused("seeds", growth_exponents, CHAIN, t, E, seeds)
     for window in (3, (1,), (0, 5), (4, 7), (5, 2), (20, 80), (1, float("inf")), "ab"):
         refused("window", growth_exponents, CHAIN, t, E, groups, window=window)
-
-
-def test_what_is_no_chain_does_not_grow():
-    with pytest.raises(InputError, match=r"^chain = .* allowed is a Chain"):
-        growth_exponents(7, [1.0], [[1.0]], [(1,), (2,)])

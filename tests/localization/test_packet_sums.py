@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 import symengine as se
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.localization.laws import breather_law, middle_modes, packet_groups, packet_parameter
-from symfpu.localization.packet_sums import check_keys, packet_energies, packet_products, product_count
-from symfpu.proofs.asymptotic_groups import asymptotic_group_energy
-from symfpu.tori.at_energy import torus_at_energy
+import symfpu
+from symfpu import Chain, InputError, breather_law, middle_modes, packet_energies, packet_groups, packet_parameter, torus_at_energy
+from symfpu.localization.packet_sums import check_keys, packet_products, product_count
 from tests.tolerances import EIGHT_DIGITS, LEADING_ORDER_SLACK, NEXT_IN_LENGTH, THOUSAND_ROUNDINGS
 
 ALPHA, BETA, BOTH = Chain(16, alpha="0.33"), Chain(20, beta="0.3"), Chain(16, alpha="0.3", beta="0.2")
@@ -56,7 +53,7 @@ def test_tori_of_small_energy_have_these_energies(chain, s, order):
 )
 def test_long_chains_have_the_derived_factor(kind, s, k):
     """The formula in N, with two powers of 1/N^2, leaves the third."""
-    formula = asymptotic_group_energy(Chain("N", **{kind: 1}), s, k)
+    formula = symfpu.asymptotic_group_energy(Chain("N", **{kind: 1}), s, k)
     left = []
     for N in (128, 256):
         chain = Chain(N, **{kind: 1})

@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.orbits import integrate
-from symfpu.errors import InputError
-from symfpu.localization.profiles import fpu_trajectory, normalised_averages, packet_amplitudes, profile_distance
+from symfpu import Chain, InputError, fpu_trajectory, integrate, normalised_averages, packet_amplitudes, profile_distance
 from tests.localization.refusals import refused
 from tests.tolerances import HARMONIC_SHARE, HUNDRED_ROUNDINGS, ROUNDING
 
@@ -106,20 +103,6 @@ def test_bad_packets_and_profiles_are_refused():
     refused("b", profile_distance, [1.0], [-1.0], 1e-3)
     refused("a", profile_distance, [float("nan")], [1.0], 1e-3)
     refused("floor", profile_distance, [1.0], [1.0], 0)
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda: fpu_trajectory("chain", {1: 1}),
-        lambda: packet_amplitudes(None, (1,), 1),
-    ],
-)
-def test_what_is_no_chain_is_named(call):
-    with pytest.raises(InputError, match=r"^chain = .* allowed is a Chain"):
-        call()
-
-
-def test_what_is_no_orbit_is_named():
-    with pytest.raises(InputError, match=r"^orbit = .*integrate with averages=True"):
-        normalised_averages("orbit")
+    refused("chain", fpu_trajectory, "chain", {1: 1})
+    refused("chain", packet_amplitudes, None, (1,), 1)
+    refused("orbit", normalised_averages, "orbit")

@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from symfpu.dynamics.orbits import integrate
-from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
-from symfpu.localization.recurrence import NoRecurrence, recurrence
+from symfpu import NoRecurrence, fpu_trajectory, integrate, packet_amplitudes, recurrence
 from symfpu.paper.printed import FIG9_BREATHER
 from tests.localization.refusals import refused
 from tests.tolerances import FINE_RETURN_VALUE, RETURN_PLACE, RETURN_TIME, RETURN_VALUE, ROUNDING, WIGGLE

@@ -7,13 +7,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.orbits import integrate
-from symfpu.errors import InputError
-from symfpu.localization.laws import profile_law
-from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
-from symfpu.localization.trials import ProfileInvariance, profile_invariance, slope_by_energy
-from symfpu.tori.at_energy import torus_at_energy
+import symfpu
+from symfpu import Chain, InputError, fpu_trajectory, integrate, profile_invariance, profile_law, slope_by_energy, torus_at_energy
 from tests.tolerances import LEAST_SQUARES, RANDOM_RATE, ROUNDING, SMALL_CHANGE, THOUSAND_ROUNDINGS
 
 ALPHA, BETA = Chain(N=32, alpha="0.33"), Chain(N=32, beta="0.3")
@@ -46,7 +41,7 @@ def test_one_spectrum_by_hand():
     result = profile_invariance(ALPHA, "1/8", 1e-6, (16, 32, 64), 500.0, scheme="aba864_modes", step=1.0)
     chain = result.chains[1]
     assert chain == ALPHA
-    Q, P = fpu_trajectory(chain, packet_amplitudes(chain, (1, 2, 3, 4), 32e-6))
+    Q, P = fpu_trajectory(chain, symfpu.packet_amplitudes(chain, (1, 2, 3, 4), 32e-6))
     orbit = integrate(chain, Q, P, 500.0, step=1.0, scheme="aba864_modes", samples=np.arange(0, 501.0))
     E = orbit.harmonic_energies()
     by_hand = (E[1:-1].sum(axis=0) + 0.5 * (E[0] + E[-1])) / 500
@@ -110,6 +105,6 @@ def test_levels_compare_the_same_kappas():
     chains = tuple(replace(ALPHA, N=N) for N in (64, 128, 256))
     spectra = tuple(10.0 ** (-40 * np.arange(1, chain.N) / chain.N)[None, :] for chain in chains)
     floors = tuple(np.zeros(chain.N - 1) for chain in chains)
-    found = ProfileInvariance(Fraction(1, 8), 1e-8, 1.0, "equal", chains, spectra, floors, ())
+    found = symfpu.ProfileInvariance(Fraction(1, 8), 1e-8, 1.0, "equal", chains, spectra, floors, ())
     assert [trend.rate for trend in found.growth.values()] == pytest.approx([1.0] * 6, abs=THOUSAND_ROUNDINGS)
     assert list(found.late_growth.values()) == pytest.approx([1.0] * 6, abs=THOUSAND_ROUNDINGS)

@@ -5,13 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu.breathers.floquet import floquet
-from symfpu.chain.chain import Chain
-from symfpu.families.following import family
-from symfpu.families.normal_family import normal_family
-from symfpu.normal.modes import NoNormalModes
-from symfpu.normal.search import normal_modes
-from symfpu.refinement.tori import refine_at_amplitudes
+from symfpu import Chain, NoNormalModes, family, floquet, normal_family, normal_modes, refine_at_amplitudes
 from tests.tolerances import BESIDE_MULTIPLIER, EXTRAPOLATED_ONSET
 
 pytestmark = pytest.mark.long
@@ -23,7 +17,7 @@ AMPLITUDES = ("4.77", "4.766", "4.7652", "4.765", "4.764", "4.76")
 @cache
 def near_the_turn():
     """N = 16, beta = 1, seed 1, on the branch of the family that turns at H = 0.8127."""
-    found = family(Chain(16, beta=1), (1,), "5", from_energy="0.5", tolerance=1e-10, members=10)
+    found = family(Chain(16, beta=1), (1,), "5", from_energy="0.5", tolerance=1e-10, members=40)
     [fold] = [e for e in found.events if e.what == "H"]
     return found.members[fold.after].torus
 

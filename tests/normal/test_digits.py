@@ -1,30 +1,20 @@
 """Normal frequencies in many digits: Floquet multipliers by Taylor series, Toda's exact ones, the series of a phantom seed."""
 
-import json
 from functools import cache
 
 import mpmath
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.breathers.digits import periodic_orbit_digits
-from symfpu.bundles.bundle import save as save_solution
-from symfpu.chain.chain import Chain
-from symfpu.chain.potentials.toda import toda
-from symfpu.cli.main import main
-from symfpu.integrable.torus import toda_torus
-from symfpu.normal import digits as sweeps
-from symfpu.normal.modes import NoNormalModes
-from symfpu.normal.search import normal_modes
-from symfpu.normal.self_consistent import solve_normal_frequency
-from symfpu.refinement.digits import Failure
-from symfpu.refinement.tori import refine_at_amplitudes
-from symfpu.saved.results import load, save
-from symfpu.tori.frequencies import torus_at_amplitudes
+import symfpu
+from symfpu import Chain, NoNormalModes, breather_at_amplitude, normal_modes, periodic_orbit_digits, refine_at_amplitudes, toda
+from symfpu.normal import digits as normal_digits
+from symfpu.refinement import iterative_refinement
+from symfpu.refinement.iterative_refinement import Failure
+from tests.normal import cases
 from tests.tolerances import NORMAL_CONVERGED, NORMAL_VARIATION, OBSERVED_ORDER
 
-HYPERBOLIC = Chain(8, beta=1), (("1", "0.1"), ("5", "0.7"))
+HYPERBOLIC = Chain(8, beta=1), ((1, "0.1"), (5, "0.7"))
 # of the torus of 50 digits, 1074 harmonics; the issue has 1.577380 +- 0.035136 i
 SIGMA_4 = "1.57738003613099878949746504259083203189511881292963"
 GROWTH_4 = "0.035136143270181357980215832942368939678481634372013"
@@ -32,9 +22,7 @@ GROWTH_4 = "0.035136143270181357980215832942368939678481634372013"
 
 @cache
 def torus(chain, amplitudes, digits, order=6):
-    wanted = {int(q): a for q, a in amplitudes}
-    doubles = refine_at_amplitudes(torus_at_amplitudes(chain, wanted, order=order), wanted)
-    return refine_at_amplitudes(doubles, wanted, digits=digits)
+    return refine_at_amplitudes(cases.torus(chain, amplitudes, order), dict(amplitudes), digits=digits)
 
 
 def small(digits=20):
@@ -84,7 +72,7 @@ def monodromy_by_taylor(orbit, alpha, steps):
         chain = TaylorChain(N, alpha, 2 * n)
         modes = np.array([[mpmath.sqrt(mpmath.mpf(2) / N) * mpmath.sinpi(mpmath.mpf(q * k) / N) for k in range(1, N)] for q in range(1, N)])
         one, zero = np.vectorize(mpmath.mpf)(np.eye(n).astype(object)), np.full((n, n), mpmath.mpf(0))
-        x = np.vstack([orbit.positions(0) @ modes, one, zero])
+        x = np.vstack([orbit.Q(0) @ modes, one, zero])
         v = np.vstack([np.full((1, n), mpmath.mpf(0)), zero, one])
         omega = orbit.frequency
         h = 2 * mpmath.pi * omega.denominator / omega.numerator / steps
@@ -93,6 +81,7 @@ def monodromy_by_taylor(orbit, alpha, steps):
         return mpmath.matrix(np.hstack([x[1:], v[1:]]).tolist())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("amplitude", ["0.3", "1"], ids=["stable", "unstable"])
 def test_of_a_breather_they_are_the_multipliers_of_its_monodromy_to_all_digits(amplitude):
     chain = Chain(4, alpha="0.5")
@@ -111,7 +100,7 @@ def test_of_a_breather_they_are_the_multipliers_of_its_monodromy_to_all_digits(a
 @pytest.mark.parametrize("digits", [18, pytest.param(35, marks=pytest.mark.long)])
 def test_todas_are_those_of_its_spectral_curve_to_all_digits(digits):
     solution = torus(Chain(4, potential=toda("1/2")), ((1, "0.2"), (3, "0.1")), digits, 4)
-    exact = toda_torus(solution.chain, (1, 3), frequencies=solution.frequencies, digits=digits + 5).normal_frequencies
+    exact = symfpu.toda_torus(solution.chain, (1, 3), frequencies=solution.frequencies, digits=digits + 5).normal_frequencies
     found = normal_modes(solution)
     assert found.frequencies.keys() == exact.keys()
     with mpmath.workdps(digits + 10):
@@ -131,18 +120,20 @@ def test_a_hyperbolic_one_has_its_digits_whatever_the_truncation(digits):
     assert mode.kind == "hyperbolic"
 
 
+@pytest.mark.long
 def test_the_series_of_a_phantom_seed_misses_its_next_power():
     chain = Chain(4, alpha="0.3", beta="0.2")
     left = []
     for scale in (1, 2):
         solution = torus(chain, ((1, f"{scale * 1e-4:.4f}"), (3, f"{scale * 2e-4:.4f}")), 40, 4)
-        series = solve_normal_frequency(solution, 2, 4, digits=40)
+        series = symfpu.solve_normal_frequency(solution, 2, 4, digits=40)
         with mpmath.workdps(50):
             left.append(abs(series.sigma - normal_modes(solution).frequencies[2]))
     assert below(left[0], 22)
     assert float(mpmath.log(left[1] / left[0], 2)) == pytest.approx(6, abs=OBSERVED_ORDER)
 
 
+@pytest.mark.long
 def test_doubles_near_a_collision_say_what_digits_say_or_that_they_do_not_know():
     """2 sigma_1 = omega, hyperbolic from A_2 = 0.770623247525 on (docs/normal-modes.md)."""
     chain, words = Chain(4, alpha="0.5"), {}
@@ -177,38 +168,16 @@ def test_sizes_and_digits_agree_with_doubles():
         assert one.coefficients[0, one.mode - 1] > 0
 
 
-def test_they_are_saved_to_the_last_bit(tmp_path):
-    """Complex and real numbers: sigma_1 is hyperbolic, sigma_3 elliptic."""
-    breather = breather_at_amplitude(Chain(4, alpha="0.5"), 2, "1")
-    found = normal_modes(periodic_orbit_digits(breather, 20, amplitude="1"))
-    assert [mode.kind for mode in found.modes] == ["hyperbolic", "elliptic"]
-    again = load(save(tmp_path / "found", found)).result
-    assert repr(again) == repr(found)
-    for one, other in zip(again.modes, found.modes, strict=True):
-        assert (one.sigma, one.digits) == (other.sigma, 20)
-        assert (one.coefficients == other.coefficients).all()
-        assert (one.action, one.error) == (other.action, other.error)
-
-
-def test_the_verb_writes_all_digits_as_text(tmp_path, capsys):
-    file = str(save_solution(tmp_path / "torus", small()))
-    assert main(["stability", file, "--json"]) == 0
-    record = json.loads(capsys.readouterr().out)
-    assert record["digits"] == 20
-    assert record["normal_frequencies"] == {str(q): str(w) for q, w in small_modes().frequencies.items()}
-    assert below(mpmath.mpf(record["frequency_error"]), 20)
-    assert main(["stability", file, "--modes", "2"]) == 0
-    assert str(small_modes().frequencies[2]) in capsys.readouterr().out
-
-
-def test_sweeps_that_gain_nothing_are_named(monkeypatch):
-    monkeypatch.setattr(sweeps, "SWEEPS", 1)
-    with pytest.raises(NoNormalModes, match=r"no 40 digits.*in_doubles"):
-        normal_modes(small(40))
+@pytest.mark.long
+def test_steps_that_gain_nothing_are_named(monkeypatch):
+    torus = small(40)
+    monkeypatch.setattr(iterative_refinement, "MOST_STEPS", 1)
+    with pytest.raises(NoNormalModes, match=r"no 40 digits.*refinement stops.*in_doubles"):
+        normal_modes(torus)
 
 
 def test_one_mode_without_digits_does_not_lose_the_others(monkeypatch):
-    refined = sweeps.PreciseModes.refined
+    refined = normal_digits.PreciseModes.refined
 
     def stopped(modes, mode, tell):
         if mode.mode == 3:
@@ -218,7 +187,7 @@ def test_one_mode_without_digits_does_not_lose_the_others(monkeypatch):
     orbit = periodic_orbit_digits(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), 20)
     whole = normal_modes(orbit)
     assert whole.frequencies.keys() == {1, 3}
-    monkeypatch.setattr(sweeps.PreciseModes, "refined", stopped)
+    monkeypatch.setattr(normal_digits.PreciseModes, "refined", stopped)
     found = normal_modes(orbit)
     assert found.missing.keys() == {3}
     assert "no 20 digits of its frequency: no more" in found.missing[3]
@@ -228,13 +197,13 @@ def test_one_mode_without_digits_does_not_lose_the_others(monkeypatch):
 
 
 def test_more_harmonics_are_taken_where_some_are_missing(monkeypatch):
-    fitted = sweeps.fitted_harmonics
+    fitted = normal_digits.fitted_harmonics
 
     def fewer(torus):
         every = fitted(torus)
         return every[np.abs(every).sum(axis=1) <= 0.6 * np.abs(every).sum(axis=1).max()]
 
-    monkeypatch.setattr(sweeps, "fitted_harmonics", fewer)
+    monkeypatch.setattr(normal_digits, "fitted_harmonics", fewer)
     found = normal_modes(small(), modes=[2])
     with mpmath.workdps(30):
         assert below(found.frequencies[2] - small_modes().frequencies[2], 20)

@@ -5,43 +5,18 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.breathers.floquet import floquet
-from symfpu.chain.chain import Chain
-from symfpu.chain.potentials.toda import toda
-from symfpu.dynamics.orbits import integrate
+import symfpu
+from symfpu import Chain, InputError, breather_at_amplitude, floquet, integrate, lindstedt, normal_modes, refine, toda, toda_torus
 from symfpu.dynamics.tangent import tangent_map_along
-from symfpu.errors import InputError
-from symfpu.integrable.torus import toda_torus
-from symfpu.normal.linearised import LinearisedFlow
 from symfpu.normal.resonances import DIFFERENCE, PARAMETRIC, SUM, resonances_of
-from symfpu.normal.search import normal_modes
 from symfpu.normal.torus import second_order
 from symfpu.paper.starts import printed_row, printed_torus
-from symfpu.refinement.tori import refine, refine_at_amplitudes
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.frequencies import torus_at_amplitudes
-from tests.tolerances import (
-    GROWTH_OF_ORBIT,
-    LAST_DIGIT,
-    NORMAL_CONVERGED,
-    NORMAL_MULTIPLIER,
-    NORMAL_PRINTED,
-    NORMAL_PROMISED,
-    NORMAL_VARIATION,
-    OBSERVED_ORDER,
-    ROUNDING,
-)
+from tests import tolerances
+from tests.normal.cases import assert_multipliers, torus
+from tests.tolerances import GROWTH_OF_ORBIT, LAST_DIGIT, NORMAL_PRINTED, NORMAL_PROMISED, NORMAL_VARIATION, OBSERVED_ORDER, ROUNDING
 
 TODA = Chain(6, potential=toda("1/2"))
 HYPERBOLIC = (Chain(8, beta=1), {1: "0.1", 5: "0.7"})
-
-
-@cache
-def torus(chain, amplitudes, order=6):
-    wanted = dict(amplitudes)
-    return refine_at_amplitudes(torus_at_amplitudes(chain, wanted, order=order), wanted)
 
 
 def small():
@@ -70,13 +45,7 @@ UNSTABLE = (
 )
 def test_of_a_breather_they_are_the_multipliers(chain, seed, amplitude):
     breather = breather_at_amplitude(chain, seed, amplitude)
-    expected = floquet(breather)
-    found = normal_modes(breather)
-    assert found.stable == expected.stable
-    ours = np.array(list(found.multipliers().values()))
-    ours = np.concatenate([ours, 1 / ours, ours.conj(), 1 / ours.conj()])
-    for one, other in ((expected.multipliers[2:], ours), (ours, expected.multipliers[2:])):
-        assert max(np.abs(other - value).min() for value in one) < NORMAL_MULTIPLIER
+    assert_multipliers(normal_modes(breather), floquet(breather))
 
 
 def carried(solution, found, T):
@@ -110,7 +79,7 @@ def test_todas_are_those_of_its_spectral_curve():
     exact = toda_torus(TODA, (1, 3), frequencies=solution.frequencies, digits=18).normal_frequencies
     found = normal_modes(solution).frequencies
     assert found.keys() == exact.keys()
-    assert all(abs(found[q] - float(w)) < NORMAL_CONVERGED for q, w in exact.items())
+    assert all(abs(found[q] - float(w)) < tolerances.NORMAL_CONVERGED for q, w in exact.items())
 
 
 def test_what_follows_the_closed_shift_is_of_fourth_order():
@@ -131,7 +100,7 @@ def test_a_hyperbolic_torus_is_found_with_its_quartet():
     by_mode = {mode.mode: mode for mode in found.modes}
     assert [q for q, mode in by_mode.items() if mode.growth] == [4, 6]
     assert complex(by_mode[4].sigma) == pytest.approx(1.577380 + 0.035136j, abs=NORMAL_PRINTED)
-    assert by_mode[6].growth == pytest.approx(by_mode[4].growth, rel=NORMAL_MULTIPLIER)
+    assert by_mode[6].growth == pytest.approx(by_mode[4].growth, rel=tolerances.NORMAL_MULTIPLIER)
     for mode in found.modes:  # Krein's form of an eigenvector whose conjugate is no partner vanishes
         assert mode.signature == 0
         assert abs(mode.action) < NORMAL_VARIATION
@@ -163,30 +132,11 @@ def test_an_orbit_beside_a_hyperbolic_torus_leaves_it_at_its_rate():
     start = 1e-8 * eigenfunction(0.0)
     Q, P = np.split(start, 2)
     times = np.arange(70.0, 260.0, 2.0)
-    orbit = integrate(solution.chain, solution.positions(0.0) + Q, solution.momenta(0.0) + P, 260.0, step=0.05, samples=times)
-    off = np.concatenate([orbit.Q - solution.positions(orbit.times), orbit.P - solution.momenta(orbit.times)], axis=-1)
+    orbit = integrate(solution.chain, solution.Q(0.0) + Q, solution.P(0.0) + P, 260.0, step=0.05, samples=times)
+    off = np.concatenate([orbit.Q - solution.Q(orbit.times), orbit.P - solution.P(orbit.times)], axis=-1)
     sizes = np.linalg.norm(off, axis=-1) / np.linalg.norm(eigenfunction(orbit.times), axis=-1)
     rate, _ = np.polyfit(orbit.times, np.log(sizes), 1)
     assert rate == pytest.approx(mode.growth, rel=GROWTH_OF_ORBIT)
-
-
-def test_the_linearised_force_is_the_derivative_and_symmetric():
-    solution = small()
-    flow = LinearisedFlow(solution, solution.harmonics)
-    mask = flow.allowed(2)
-    rng = np.random.default_rng(0)
-    u, v = (np.where(mask, rng.normal(size=mask.shape), 0) for _ in range(2))
-    assert np.sum(u * flow.coupling(v)) == pytest.approx(np.sum(v * flow.coupling(u)), rel=ROUNDING)
-    rows, columns = np.nonzero(mask)
-    some = slice(0, 40)
-    block = flow.block(rows[some], columns[some])
-    unit = np.zeros(mask.shape)
-    unit[rows[7], columns[7]] = 1
-    assert flow.coupling(unit)[rows[some], columns[some]] == pytest.approx(block[7], abs=ROUNDING)
-
-
-def test_signatures_at_small_amplitudes_are_positive():
-    assert {mode.signature for mode in normal_modes(small()).modes} == {1}
 
 
 def test_resonances_are_the_nearest_and_keep_the_selection_rules():
@@ -201,7 +151,7 @@ def test_resonances_are_the_nearest_and_keep_the_selection_rules():
 
 
 def test_a_torus_that_is_not_refined_is_refused():
-    rough = solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1,), ("0.3905",), 3))
+    rough = symfpu.solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1,), ("0.3905",), 3))
     with pytest.raises(InputError, match=r"residual.*refine\(solution\)"):
         normal_modes(rough)
 

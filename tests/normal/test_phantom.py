@@ -3,12 +3,7 @@
 import pytest
 import symengine as se
 
-from symfpu.chain.chain import Chain
-from symfpu.chain.frequency_shift import frequency_shift
-from symfpu.errors import InputError, ResonantDivisor, TooLarge
-from symfpu.normal.phantom import normal_frequency_series
-from symfpu.series.closed_forms import substitute_multipliers
-from symfpu.series.lindstedt import lindstedt
+from symfpu import Chain, InputError, ResonantDivisor, TooLarge, lindstedt, normal_frequency_series, substitute_multipliers
 from symfpu.series.memory import check_size
 from tests.tolerances import ROUNDING, THIRTY_DIGITS
 
@@ -75,22 +70,6 @@ def test_digits_are_those_of_the_whole_series(mode):
     for mine, theirs in zip(found.coefficients, expected, strict=True):
         assert mine.keys() == theirs.keys()
         assert all(abs(c / theirs[e] - 1) < THIRTY_DIGITS for e, c in mine.items())
-
-
-@pytest.mark.parametrize("chain", [BOTH, Chain(8, beta=1), Chain(8, potential="toda:1/2")], ids=repr)
-def test_its_lowest_terms_are_the_closed_shift(chain):
-    linear = chain.frequencies()
-    amplitudes = {1: 0.1, 4: 0.2}
-    for mode in (2, 7):  # 7: special with 1
-        omega = {q: f"{linear[q - 1]:.17g}" for q in (mode, *amplitudes)}
-        first = 2 // chain.degree_step
-        found = normal_frequency_series(chain, tuple(amplitudes), mode, first, omega)
-        shift = sum(found.terms(amplitudes)[1:])
-        expected = frequency_shift(chain, {**amplitudes, mode: 0})[mode]
-        assert shift == pytest.approx(expected, rel=ROUNDING)
-        numbers = {f"A{q}": a for q, a in amplitudes.items()} | {f"Omega_{q}": linear[q - 1] for q in range(1, 8)}
-        closed = found.closed_shift().subs({se.Symbol(s): x for s, x in numbers.items()})
-        assert float(closed) == pytest.approx(expected, rel=ROUNDING)
 
 
 def test_a_phantom_seed_that_is_resonant_is_named():

@@ -1,21 +1,11 @@
 """The series of normal frequencies, solved at a torus, against Newton's method on eigenfunctions."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.normal.modes import NoNormalModes
-from symfpu.normal.phantom import normal_frequency_series
-from symfpu.normal.search import normal_modes
-from symfpu.normal.self_consistent import solve_normal_frequency
-from symfpu.refinement.tori import refine_at_amplitudes
-from symfpu.refinement.travelling_breather import travelling_breather
-from symfpu.tori.frequencies import torus_at_amplitudes
-from symfpu.tori.ring_torus import unfold
+import symfpu
+from symfpu import Chain, InputError, breather_at_amplitude, normal_modes, solve_normal_frequency, travelling_breather
+from tests.normal.cases import torus
 from tests.tolerances import NORMAL_CONVERGED, OBSERVED_ORDER, THIRTY_DIGITS
 
 MODELS = {
@@ -24,12 +14,6 @@ MODELS = {
     "Toda": (Chain(6, potential="toda:1/2"), 4),
     "both": (Chain(5, alpha="0.3", beta="0.2"), 4),
 }
-
-
-@cache
-def torus(chain, amplitudes, order):
-    wanted = dict(amplitudes)
-    return refine_at_amplitudes(torus_at_amplitudes(chain, wanted, order=order), wanted)
 
 
 @pytest.mark.parametrize("model", ["alpha", *(pytest.param(m, marks=pytest.mark.long) for m in ("beta", "Toda", "both"))])
@@ -45,7 +29,7 @@ def test_what_the_series_misses_is_of_the_next_order(model):
 
 
 def test_the_solution_solves_the_equation_with_digits():
-    solution = torus_at_amplitudes(Chain(4, beta=1), {1: "0.1"}, order=3, digits=30)
+    solution = symfpu.torus_at_amplitudes(Chain(4, beta=1), {1: "0.1"}, order=3, digits=30)
     found = solve_normal_frequency(solution, 3, 3, digits=30)
     assert abs(found.at(solution.amplitudes) / found.sigma - 1) < THIRTY_DIGITS
     doubles = solve_normal_frequency(solution, 3, 3)
@@ -56,7 +40,7 @@ def test_the_solution_solves_the_equation_with_digits():
 def test_a_hyperbolic_direction_is_refused():
     """Far beyond the onset no real sigma solves the equation, once the partner's divisor enters."""
     solution = torus(Chain(8, beta=1), ((1, "0.1"), (5, "0.7")), 6)
-    with pytest.raises(NoNormalModes, match="continues mode 4"):
+    with pytest.raises(symfpu.NoNormalModes, match="continues mode 4"):
         solve_normal_frequency(solution, 4, 5)
 
 
@@ -67,13 +51,6 @@ def test_arguments_out_of_range_are_refused():
             solve_normal_frequency(breather, *arguments)
     with pytest.raises(InputError, match="solution"):
         solve_normal_frequency(3, 1, 2)
-
-
-def test_two_particles():
-    chain = Chain(3, alpha=1)
-    found = solve_normal_frequency(breather_at_amplitude(chain, 1, "0.02"), 2, 8)
-    exact = normal_modes(breather_at_amplitude(chain, 1, "0.02")).frequencies[2]
-    assert found.sigma == pytest.approx(exact, abs=NORMAL_CONVERGED)
 
 
 @pytest.mark.parametrize("law", [{"alpha": "0.3"}, {"beta": "0.5"}, {"potential": "toda:1/2"}], ids=str)
@@ -94,7 +71,7 @@ def test_what_the_series_of_a_ring_misses_is_of_the_next_order(law):
 def test_the_series_of_a_ring_is_that_of_its_amplitudes():
     solution = travelling_breather(Chain(8, alpha="0.3", ends="periodic"), 1, amplitude="0.2")
     found = solve_normal_frequency(solution, -3, 4)
-    given = normal_frequency_series(solution.chain, (1,), -3, 4, found.frequencies)
+    given = symfpu.normal_frequency_series(solution.chain, (1,), -3, 4, found.frequencies)
     assert given.at({1: 0.2}) == pytest.approx(found.sigma, abs=NORMAL_CONVERGED)
     assert float(found.correction(2).subs({"A1": 1})) == found.coefficients[2][(2,)]
 
@@ -104,12 +81,12 @@ def test_a_ring_has_no_other_series_than_of_travelling_waves_in_doubles():
     with pytest.raises(InputError, match=r"^digits"):
         solve_normal_frequency(solution, 2, 2, digits=30)
     with pytest.raises(InputError, match="standing"):
-        solve_normal_frequency(unfold(breather_at_amplitude(Chain(4, beta=1), 1, "0.1")), 2, 2)
+        solve_normal_frequency(symfpu.unfold(breather_at_amplitude(Chain(4, beta=1), 1, "0.1")), 2, 2)
     with pytest.raises(InputError, match="on a ring give frequencies="):
-        normal_frequency_series(solution.chain, (1,), 2, 2)
+        symfpu.normal_frequency_series(solution.chain, (1,), 2, 2)
     with pytest.raises(InputError, match="fixed ends"):
         solve_normal_frequency(solution, 2, 2).closed_shift()
     omega = {1: "0.76", 2: "1.4"}
     for option in ({"digits": 20}, {"ring": "nested"}):
         with pytest.raises(InputError, match=f"^{next(iter(option))}"):
-            normal_frequency_series(solution.chain, (1,), 2, 2, omega, **option)
+            symfpu.normal_frequency_series(solution.chain, (1,), 2, 2, omega, **option)

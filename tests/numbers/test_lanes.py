@@ -95,13 +95,3 @@ def test_an_entry_is_a_copy_without_the_compiler():
     before = entry(rows, 0)
     put(rows, 0, before + 1.0)
     assert np.array_equal(before, ROWS[0])
-
-
-@pytest.mark.parametrize("shape", [(8,), (3, 5, LANES), (0, 3, LANES), (1, LANES)])
-def test_zeros_begin_with_a_line_of_the_cache(shape):
-    for _ in range(5):
-        made = zeros(shape)
-        assert made.shape == shape
-        assert made.flags.c_contiguous
-        assert made.ctypes.data % 64 == 0 or made.size == 0
-        assert not made.any()

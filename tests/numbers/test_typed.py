@@ -9,8 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
+from symfpu import Chain, InputError
 from symfpu.numbers.typed import exact, integer, seed_modes
 
 

@@ -6,23 +6,21 @@ non-zero component of a harmonic being positive. Nothing here uses bonds, the va
 
 from collections import defaultdict
 from fractions import Fraction
-from itertools import product
 
 import mpmath
+import numpy as np
 
 DIGITS = 40
 
 
 def tensor(N, rank):
     """{(q, l, m[, n]): B or C} from sums of products of cosines over the bonds (not from a selection rule)."""
-    cosine = [[mpmath.cos(q * (j + mpmath.mpf(1) / 2) * mpmath.pi / N) for j in range(N)] for q in range(1, N)]
-    entries = {}
-    for modes in product(range(1, N), repeat=rank):
-        total = mpmath.fsum(mpmath.fprod(cosine[q - 1][j] for q in modes) for j in range(N))
-        coupling = total * 2 ** (rank - 1) / N
-        if abs(coupling) > 0.5:  # couplings are integers
-            entries[modes] = mpmath.nint(coupling)
-    return entries
+    cosines = np.cos(np.pi / N * np.outer(np.arange(1, N), np.arange(N) + 0.5))
+    products = cosines
+    for _ in range(rank - 1):
+        products = products[..., None, :] * cosines
+    couplings = np.rint(products.sum(axis=-1) * 2 ** (rank - 1) / N).astype(int)  # they are integers
+    return {tuple(int(i) + 1 for i in place): int(couplings[tuple(place)]) for place in np.argwhere(couplings)}
 
 
 def canonical(harmonic):
@@ -30,21 +28,21 @@ def canonical(harmonic):
     return harmonic if lead >= 0 else tuple(-n for n in harmonic)
 
 
-def times(f, g, factor=1):
-    """factor f g, by cos a cos b = (cos(a + b) + cos(a - b)) / 2."""
+def times(f, g):
+    """f g, by cos a cos b = (cos(a + b) + cos(a - b)) / 2."""
     result = defaultdict(mpmath.mpf)
     for (e, nu), a in f.items():
         for (d, rho), b in g.items():
             powers = tuple(x + y for x, y in zip(e, d, strict=True))
             for sign in (1, -1):
                 harmonic = canonical(tuple(x + sign * y for x, y in zip(nu, rho, strict=True)))
-                result[powers, harmonic] += factor * a * b / 2
+                result[powers, harmonic] += a * b / 2
     return dict(result)
 
 
-def add(target, f):
+def add(target, f, factor=1):
     for key, value in f.items():
-        target[key] = target.get(key, 0) + value
+        target[key] = target.get(key, 0) + factor * value
 
 
 class ModeSpaceSeries:
@@ -66,7 +64,7 @@ class ModeSpaceSeries:
         ratio = beta / alpha**2 if alpha else Fraction(1)
         self.beta_delay = 2 if alpha else 1  # mu^2 beta / alpha^2 = beta / 2N
         self.beta_factor = mpmath.mpf(ratio.numerator) / ratio.denominator
-        self.Q = {q: [{}] for q in range(1, N)}
+        self.Q, self._products = {q: [{}] for q in range(1, N)}, {}
         for i, q in enumerate(seeds):
             unit = tuple(int(i == j) for j in range(len(seeds)))
             self.Q[q] = [{(unit, unit): mpmath.mpf(1)}]
@@ -76,19 +74,23 @@ class ModeSpaceSeries:
     def _force(self, q, k):
         """The couplings of Eqs. moda and modb for mode q at order k."""
         force = {}
-        for (p, l, m), coupling in self.B.items():
-            if p == q:
-                for n in range(k):
-                    weight = -self.linear[q] * self.linear[l] * self.linear[m] * coupling
-                    add(force, times(self.Q[l][n], self.Q[m][k - 1 - n], weight))
-        top = k - self.beta_delay
-        for (p, l, m, n), coupling in self.C.items():
-            if p == q:
-                weight = -self.beta_factor * self.linear[q] * self.linear[l] * self.linear[m] * self.linear[n] * coupling
-                for a in range(top + 1):
-                    for b in range(top + 1 - a):
-                        add(force, times(times(self.Q[l][a], self.Q[m][b]), self.Q[n][top - a - b], weight))
+        for couplings, factor, delay in ((self.B, 1, 1), (self.C, self.beta_factor, self.beta_delay)):
+            for (p, *modes), coupling in couplings.items():
+                if p == q:
+                    weight = -factor * self.linear[q] * coupling * mpmath.fprod(self.linear[m] for m in modes)
+                    add(force, self._product(tuple(sorted(modes)), k - delay), weight)
         return force
+
+    def _product(self, modes, order):
+        """The terms of an order of the product of these modes; kept for all that it drives."""
+        if (modes, order) not in self._products:
+            *first, last = modes
+            terms = {}
+            for n in range(order + 1):
+                left = self._product(tuple(first), n) if first[1:] else self.Q[first[0]][n]
+                add(terms, times(left, self.Q[last][order - n]))
+            self._products[modes, order] = terms
+        return self._products[modes, order]
 
     def _advance(self, k):
         terms = {q: self._force(q, k) for q in self.Q}

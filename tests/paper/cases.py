@@ -6,11 +6,10 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from symfpu.chain.chain import Chain
-from symfpu.dynamics.alignment import AlignmentIndices
+from symfpu import AlignmentIndices, Chain, ForetoldIndices
 from symfpu.paper import dimensions, fig9
+from symfpu.paper.fig9_tori import approach
 from symfpu.paper.starts import printed_row
-from symfpu.paper.toda_growth import TodaGrowth
 
 
 def alignment(dimension, *, vectors=5, T=1e7, growth=1.0):
@@ -20,11 +19,17 @@ def alignment(dimension, *, vectors=5, T=1e7, growth=1.0):
     return AlignmentIndices(Chain(16, alpha="0.33"), t, np.log10(t)[:, None] * powers, growth * np.log(t) / t, 0.4, 1e-12)
 
 
-def growth_at(rates, N=16):
-    """Directions that grow at these rates, and no others."""
-    random = np.random.default_rng(3)
-    left, right = (np.linalg.qr(random.normal(size=(2 * N - 2, len(rates))))[0] for _ in range(2))
-    return TodaGrowth(Chain(N, alpha="0.33"), (left * rates) @ right.T, np.ones(N - 1))
+def foretold(dimension, *, vectors=7, frames=4, T=1e11):
+    """The same indices, as frames of a forecast have them."""
+    t = np.geomspace(1.0, T, 440)
+    powers = -np.maximum(0.0, np.arange(2, vectors + 1) - dimension)
+    torus = SimpleNamespace(chain=Chain(32, alpha="0.33"), seeds=(1, 2, 3, 4, 5))
+    rates = 10.0 ** -np.arange(3, 8)
+    return (ForetoldIndices(torus, t, np.log10(t)[:, None] * powers, np.log(t), rates, "modes at rest"),) * frames
+
+
+def unheard(label, fraction):
+    """Progress that nobody asks for."""
 
 
 def record(times, Q):
@@ -39,9 +44,10 @@ def exponential(N, decades):
 
 
 def shorter_figure_9(monkeypatch):
-    """Order 40 in place of 242; one recurrence; alignment indices to 1e3."""
+    """Order 40 in place of 242; one recurrence; alignment indices to 1e3; tori near an orbit of a short chain."""
     monkeypatch.setattr(fig9, "printed_row", lambda label: replace(printed_row(label), order=40))
     monkeypatch.setattr("symfpu.paper.starts.AMPLITUDE_ORDERS", {})
     monkeypatch.setattr(fig9, "TIME", 1.5e4)
     monkeypatch.setattr(fig9, "LOOKS", 1501)
     monkeypatch.setattr(dimensions, "TIME", 1e3)
+    monkeypatch.setattr(fig9, "approach", lambda chain, energy, progress: approach(Chain(8, alpha="0.3"), "0.001", progress, (1, 2)))

@@ -7,8 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import periodic_orbit
-from symfpu.errors import InputError
+from symfpu import InputError, amplitude_history, lindstedt, periodic_orbit, solve_amplitudes
 from symfpu.paper.convergence_fig1 import (
     DETUNED_FREQUENCIES,
     INCOMMENSURABLE_FREQUENCIES,
@@ -20,8 +19,6 @@ from symfpu.paper.convergence_fig1 import (
 )
 from symfpu.paper.convergence_fig9 import _singularity, breather_study, scheme_limit, series_end
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, FIG9_BREATHER, TWO_TORUS
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
 from tests.tolerances import (
     ALIKE,
     END_SPREAD,
@@ -30,7 +27,6 @@ from tests.tolerances import (
     FOUR_DIGITS,
     FOUR_PLACES,
     LATE_TERM_RATIO,
-    NEWTON_RESIDUAL,
     PERIODIC_ORBIT,
     ROUNDING,
     SEQUENCE_LIMIT,
@@ -76,7 +72,6 @@ def heights(sums):
     return [float(sums[first : first + 7].max()) for first in (10, 17, 24)]
 
 
-@pytest.mark.long
 def test_one_harmonic_grows_by_a_constant_ratio(torus):
     ratios = growth_ratios(torus)
     assert list(ratios) == list(range(10, 31, 2))
@@ -109,7 +104,6 @@ def test_at_the_pole_the_frequency_of_mode_3_is_that_of_the_harmonic(torus):
     assert terms[1:, 2].sum() == pytest.approx(shift, rel=TERM_RATIO)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     ("frequencies", "digits"),
     [(TWO_TORUS.frequencies, 40), (INCOMMENSURABLE_FREQUENCIES, 40), (INCOMMENSURABLE_FREQUENCIES, None)],
@@ -123,12 +117,6 @@ def test_neither_digits_nor_incommensurable_frequencies_change_how_amplitudes_se
         assert delta == pytest.approx(theirs[k], rel=ALIKE)
 
 
-@pytest.mark.long
-def test_incommensurable_frequencies_leave_the_terms_as_they_are(torus):
-    assert sizes(torus_of(INCOMMENSURABLE_FREQUENCIES)) == pytest.approx(sizes(torus), rel=ALIKE)
-
-
-@pytest.mark.long
 def test_printed_frequencies_grow_and_detuned_ones_fall(torus):
     """omega_2 = 0.39056 makes one divisor eleven times larger: the terms of mode 1 fall to the last order."""
     printed, detuned = heights(sizes(torus)), heights(sizes(torus_of(DETUNED_FREQUENCIES)))
@@ -158,13 +146,6 @@ def test_a_coincidence_is_in_lowest_terms(first, second, shortest):
     assert _coincidence(SimpleNamespace(frequencies=(Fraction(first), Fraction(second)))) == shortest
 
 
-def test_the_printed_frequency_has_a_periodic_orbit_of_another_amplitude():
-    orbit = periodic_orbit(FIG9_BREATHER.chain, 1, FIG9_BREATHER.frequencies[0])
-    assert orbit.amplitude == pytest.approx(PERIODIC, abs=PERIODIC_ORBIT)
-    assert orbit.residual() < NEWTON_RESIDUAL
-    assert float(FIG9_BREATHER.amplitudes[0]) > END > orbit.amplitude
-
-
 def test_the_breathers_series_ends_in_a_square_root(breather):
     end, spread, exponent = _singularity(breather)
     assert end == pytest.approx(END, rel=SINGULARITY)
@@ -172,7 +153,6 @@ def test_the_breathers_series_ends_in_a_square_root(breather):
     assert exponent == pytest.approx(0.5, abs=SMALL_CHANGE)
 
 
-@pytest.mark.long
 def test_roots_of_the_breather_fall_and_stay_above_the_end_of_the_series(breather):
     """A(K) > END > PERIODIC: the truncated roots tend to an amplitude beyond which the series says nothing."""
     history = amplitude_history(breather)
@@ -205,7 +185,6 @@ def test_the_singularity_of_a_binomial_series_is_found(end, exponent):
     assert spread < SEQUENCE_LIMIT
 
 
-@pytest.mark.long
 def test_the_study_of_fig_1():
     labels = []
     study = cancellation_study(lambda label, fraction: labels.append(label))
@@ -236,7 +215,6 @@ def test_the_series_reaches_its_frequency_before_its_end_up_to_a_limit(omega, be
     assert end > 0.999 * periodic_orbit(FIG9_BREATHER.chain, 1, omega).amplitude
 
 
-@pytest.mark.long
 def test_at_the_limit_the_breather_is_the_end_of_its_series():
     limit = scheme_limit(FIG9_BREATHER.chain, 1, ("0.0005", "0.05"))
     end, reached = series_end(FIG9_BREATHER.chain, 1, float(limit.orbit.frequency))
@@ -248,13 +226,11 @@ def test_at_the_limit_the_breather_is_the_end_of_its_series():
     assert all(m.verdict == "torus" for m in limit.family.members)
 
 
-@pytest.mark.long
 def test_a_range_without_the_limit_is_refused():
     with pytest.raises(InputError, match=r"^energies = .*the second larger"):
         scheme_limit(FIG9_BREATHER.chain, 1, ("0.0002", "0.002"))
 
 
-@pytest.mark.long
 def test_the_study_of_fig_9():
     study = breather_study()
     assert study.assessment.headline == "not a torus"

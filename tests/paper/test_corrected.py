@@ -1,6 +1,5 @@
 """Exact tori of the printed frequencies: amplitudes by two routes, errors of the series by order and by mu, what a verdict says."""
 
-import csv
 import json
 import math
 from dataclasses import replace
@@ -8,18 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import periodic_orbit
-from symfpu.chain.chain import Chain
+from symfpu import Chain, lindstedt, periodic_orbit, refine, solve_amplitudes
 from symfpu.paper import corrected, series_errors
-from symfpu.paper.claims import PaperFigure
-from symfpu.paper.claims_page import draw_panels, figure_markdown, write_panel_csv
 from symfpu.paper.corrected import HEAVY_ROWS, CorrectedRow, corrected_row, corrected_rows, left_out
-from symfpu.paper.corrected_page import corrected_line, corrected_panels, corrected_record, corrected_text
+from symfpu.paper.corrected_page import corrected_line, corrected_record, corrected_text
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
 from symfpu.paper.series_errors import ScalingStudy, SeriesErrors, decay, scaling_study
-from symfpu.refinement.tori import refine
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
 from tests.tolerances import CONVERGED_DIGITS, LAST_DIGIT, PROMISED_RESIDUAL, RATE_OF_MU, SLOPE, SMALL_CHANGE, TEN_ROUNDINGS, TWELVE_DIGITS
 
 BY_LABEL = {row.label: row for row in (TWO_TORUS, *APPENDIX_F)}
@@ -42,6 +35,7 @@ def study(breather):
     return scaling_study(breather.torus, "Fig. 7")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("label", ["Fig. 7", "Fig. 8", "Fig. 9"])
 def test_a_breather_is_the_periodic_orbit(label):
     """Two solvers: long doubles with Krylov steps, and harmonic balance in doubles."""
@@ -87,7 +81,7 @@ def test_errors_are_those_of_the_truncated_torus(pair):
     cut = replace(solve_amplitudes(series, frequency_order=8, order=8), amplitudes=pair.torus.amplitudes)
     t = np.linspace(0, 500, 400)
     linear = TWO_TORUS.chain.frequencies()
-    apart = float((linear * np.abs(cut.positions(t) - pair.torus.positions(t))).max())
+    apart = float((linear * np.abs(cut.Q(t) - pair.torus.Q(t))).max())
     size = float((linear * np.abs(pair.torus.cosines)).max())
     assert 1.0 <= apart / size / pair.errors.given[8] < 20  # a sum of coefficients in the place of the largest
 
@@ -208,14 +202,6 @@ def test_a_torus_above_its_tolerance_is_not_an_exact_one(monkeypatch):
     assert corrected_row(SMALL).verdict == "not refined: too few harmonics"
 
 
-def test_every_step_is_told():
-    lines = []
-    corrected_row(SMALL, lambda label, fraction: lines.append(label))
-    assert all(line.startswith("corrected: Fig. 7: ") for line in lines)
-    assert any("step 1: residual" in line for line in lines)
-    assert any("errors with" in line for line in lines)
-
-
 def test_heavy_rows_are_computed_in_full_only(monkeypatch):
     asked = []
     monkeypatch.setattr(
@@ -236,39 +222,6 @@ def two_rows(breather):
     return [breather, left_out(BY_LABEL["Fig. 5b"], "more than 5 s")]
 
 
-def figure_of(rows, study):
-    panels = corrected_panels(rows, [study])
-    return PaperFigure("table", "Corrected", panels, (), text=corrected_text(rows, [study]))
-
-
-def test_pictures_of_errors_have_a_curve_for_each_refined_row(two_rows, study):
-    solved, given, scaling = corrected_panels(two_rows, [study])
-    (curve,) = given.curves
-    assert (curve.label, dict(zip(curve.x, curve.y, strict=True))) == ("Fig. 7", two_rows[0].errors.given)
-    assert [curve.label for curve in solved.curves] == ["Fig. 7"]
-    by_style = {style: [c for c in scaling.curves if c.style == style] for style in ("marks", "line", "crosses")}
-    assert [len(curves) for curves in by_style.values()] == [4, 4, 3]
-    for errors, law, K in zip(by_style["marks"], by_style["line"], (1, 2, 3, 4), strict=True):
-        assert errors.y.tolist() == list(study.given[K])
-        assert law.y == pytest.approx(study.given[K][-1] * (law.x / law.x[-1]) ** (K + 1))
-        assert errors.group == law.group
-    assert [curve.group for curve in by_style["crosses"]] == [1, 2, 3]  # K = 1 has no amplitudes of its own
-
-
-def test_the_page_has_printed_and_exact_numbers(two_rows, study):
-    page = figure_markdown(figure_of(two_rows, study))
-    row = two_rows[0]
-    assert "| Fig. 7 | 1 | 0.18574105489382606 | 0.185736029576 | +2.7e-05 |" in page
-    assert f"| Fig. 7 | 0.00016635 | {row.energies['H']:#.12g} |" in page
-    assert "- Fig. 5b: not refined: more than 5 s." in page
-    assert f"- Fig. 7: {row.verdict}." in page
-    assert f"| Fig. 7 | 2 | {study.rates[2][0]:.3f} | 3 | {study.rates[2][1]:.3f} | 2 |" in page
-    assert f"| Fig. 7 | 3 | {study.rates[3][0]:.3f} | 4 | {study.rates[3][1]:.3f} | 2 |" in page
-    assert f"| Fig. 7 | 1 | {study.rates[1][0]:.3f} | 2 |  |  |" in page
-    assert all(page.count(f"](corrected-{c}.png)") == 1 for c in "abc")
-    assert "nan" not in page
-
-
 def test_the_record_is_strict_json(two_rows, study):
     record = json.loads(json.dumps([corrected_record(two_rows[0], study), corrected_record(two_rows[1])], allow_nan=False))
     assert record[1] == {"refined": False, "verdict": "not refined: more than 5 s"}
@@ -277,30 +230,6 @@ def test_the_record_is_strict_json(two_rows, study):
     assert record[0]["errors"]["given"]["3"] == pytest.approx(two_rows[0].errors.given[3], rel=TEN_ROUNDINGS)
     assert record[0]["exponents_of_mu"]["1"]["solved"] is None
     assert record[0]["decays"]["given"]["last_falling_order"] == two_rows[0].decays["given"].last
-
-
-def test_zeros_at_the_end_of_an_amplitude_are_kept(breather):
-    torus = replace(breather.torus, amplitudes={1: 0.25})
-    assert "A_1 = 0.250000000000," in corrected_line(replace(breather, torus=torus))
-    assert "A_1 = 0.25000000," in corrected_line(replace(breather, torus=torus, digits=0))
-
-
-@pytest.mark.long
-def test_data_and_pictures_are_written(two_rows, study, tmp_path):
-    figure = figure_of(two_rows, study)
-    paths = write_panel_csv(figure, tmp_path)
-    assert [path.name for path in paths] == [f"corrected-{c}.csv" for c in "abc"]
-    header, *lines = csv.reader(paths[0].read_text().splitlines())
-    assert header == ["K", "Fig. 7"]
-    assert {int(K): float(e) for K, e in lines} == two_rows[0].errors.solved
-    _, *lines = csv.reader(paths[1].read_text().splitlines())
-    assert {int(K): float(e) for K, e in lines} == two_rows[0].errors.given
-    header, *lines = csv.reader(paths[2].read_text().splitlines())
-    assert header == ["scale", *(f"given_{K}" for K in (1, 2, 3, 4)), *(f"solved_{K}" for K in (2, 3, 4))]
-    assert [float(line[1]) for line in lines] == list(study.given[1])
-    pictures = draw_panels(figure, tmp_path)
-    assert [path.name for path in pictures] == [f"corrected-{c}.{suffix}" for c in "abc" for suffix in ("png", "pdf")]
-    assert all(path.stat().st_size > 5000 for path in pictures)
 
 
 @pytest.mark.long

@@ -1,15 +1,19 @@
-"""The entries of docs/errata.md, one test each."""
+"""The entries of docs/errata.md, one test each, and its tables of verdicts, which are held to what the targets compute."""
 
+import importlib.util
 from functools import cache
+from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain, ResonantDivisor, amplitude_history, excitation_sequence, lindstedt, reachable_modes, solve_amplitudes
 from symfpu.paper.printed import APPENDIX_F, FIG1_AMPLITUDE_ORDER, TWO_TORUS
 from symfpu.paper.table import amplitude_row, energies, rounds_to
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
+from symfpu.paper.targets import TARGETS
+from tests.paper.cases import unheard
 from tests.tolerances import ONE_PLACE, PERIODIC_ORBIT, STATED_LEAST, STATED_MOST, TWO_DIGITS
 
 
@@ -44,6 +48,68 @@ def test_average_energy_needs_one_half():
     series = lindstedt(Chain(N=8, alpha="0.1"), (1,), ("0.3902",), 6)
     torus = solve_amplitudes(series)
     assert torus.average_spectrum().sum() / torus.energy() == pytest.approx(1, abs=ONE_PLACE)
+
+
+def test_frequencies_may_be_resonant_though_each_is_incommensurable():
+    """No frequency is a rational multiple of another or of an Omega_q; a divisor of order 1 is zero."""
+    chain, seeds = Chain(N=6, alpha=1), (1, 3)
+    chosen = (sympy.sqrt(5) / 4, 1 + sympy.sqrt(5) / 4)
+    linear = {q: 2 * sympy.sin(sympy.pi * q / (2 * chain.N)) for q in chain.mode_numbers}
+    ratios = [omega / Omega for omega in chosen for Omega in linear.values()] + [chosen[1] / chosen[0]]
+    assert all(sympy.degree(sympy.minimal_polynomial(ratio)) > 1 for ratio in ratios)
+    assert linear[2] ** 2 - (chosen[0] - chosen[1]) ** 2 == 0
+    term = lindstedt(chain, seeds, order=1).term(q=2, order=1)
+    assert "L_{2}(1,-1)" in {str(symbol) for symbol in term.free_symbols}
+    with pytest.raises(ResonantDivisor) as found:
+        lindstedt(chain, seeds, ("0.559", "1.559"), order=1)
+    assert (found.value.mode, found.value.harmonic, found.value.order) == (2, (1, -1), 1)
+
+
+def sets_as_printed(N, seeds, order, step):
+    """M_k of Eq. app, from every signed sum of r seeds."""
+    r = step * order + 1
+    sums = {abs(sum(chosen)) for chosen in product([sign * q for q in seeds for sign in (1, -1)], repeat=r)}
+    return {abs(2 * ((total + N - 1) // (2 * N)) * N - total) for total in sums}
+
+
+@pytest.mark.parametrize(("model", "step"), [("alpha", 1), ("beta", 2)])
+@pytest.mark.parametrize("N", [4, 7, 8])
+def test_the_formula_of_the_sets_gives_zero_and_N(N, model, step):
+    found = set()
+    for seeds in [(q,) for q in range(1, N)] + [(1, N - 1), (1, 2)]:
+        for k, modes in enumerate(reachable_modes(N, seeds, 2, model=model)):
+            printed = sets_as_printed(N, seeds, k, step)
+            assert printed - {0, N} == set(modes)
+            assert 0 in printed or model == "beta" or k % 2 == 0
+            found |= printed - set(modes)
+    assert found == {0, N}
+
+
+LONGEST = 25  # powers of two to 16, and multiples of three
+BREATHERS = [(N, q) for N in range(2, LONGEST) for q in range(1, N)]
+
+
+def exponent_of_two(n):
+    """v2(n), the largest v with 2^v a factor of n."""
+    return (n & -n).bit_length() - 1
+
+
+def test_doubled_orders_of_breathers_are_a_matter_of_powers_of_two():
+    """To the order where multiples of q return to q, beyond which neither model has a new mode."""
+    for N, q in BREATHERS:
+        last = N // 2 + 1
+        alpha = excitation_sequence(N, (q,), 2 * last)
+        beta = excitation_sequence(N, (q,), last, model="beta")
+        holds = exponent_of_two(q) <= exponent_of_two(N) or 3 * q == 2 * N
+        assert (alpha[::2] == beta) == holds, (N, q)
+    assert excitation_sequence(7, (2,), 2) == [(2,), (4,), (6,)]
+    assert excitation_sequence(7, (2,), 2, model="beta") == [(2,), (6,), (4,)]
+
+
+def test_an_odd_seed_of_alpha_excites_even_modes_but_for_the_middle():
+    odd = [(N, q) for N, q in BREATHERS if q % 2]
+    without = [(N, q) for N, q in odd if not any(m % 2 == 0 for modes in excitation_sequence(N, (q,), N) for m in modes)]
+    assert without == [(N, N // 2) for N in range(2, LONGEST, 4)]
 
 
 ORDERS = {"Fig. 2": 4, "Fig. 5a": 6, "Fig. 5b": 6, "Fig. 5d": 4, "Fig. 9": 242}
@@ -117,3 +183,35 @@ def test_energies_are_three_numbers():
     values = energies(row("Fig. 2").torus)
     assert len({f"{v:.6g}" for v in values.values()}) == 3
     assert [rounds_to(v, "0.000182466") for v in values.values()] == [False, True, False]
+
+
+PAGE = Path(__file__).parents[2] / "docs" / "errata.md"
+
+
+def loaded():
+    spec = importlib.util.spec_from_file_location("make_verdicts", PAGE.parent / "make_verdicts.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+verdicts = loaded()
+
+
+def claim(text, ours):
+    return {"section": "5", "text": text, "printed": "-", "ours": ours, "verdict": "holds"}
+
+
+def test_every_target_with_claims_has_a_table():
+    assert set(verdicts.TARGETS.values()) == TARGETS.keys() - {"toda"}
+    headings = PAGE.read_text().split("## Claims of sections")[1].split("\n### ")[1:]
+    assert [part.splitlines()[0] for part in headings] == list(verdicts.TARGETS)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("target", ["section5", "fig6"])
+def test_cells_are_what_the_target_computes(target, tmp_path):
+    """Two targets of seconds, whose evidence is of whole numbers or rounded far above rounding; the others by `make verdicts`."""
+    figure = TARGETS[target](tmp_path, unheard)
+    record = {target: {"claims": [claim.record() for claim in figure.claims]}}
+    assert verdicts.with_verdicts(PAGE.read_text(), record) == PAGE.read_text()

@@ -5,13 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.files.progress import unheard
-from symfpu.localization.growth import GroupGrowth
+from symfpu import Chain, GroupGrowth
 from symfpu.paper import fig3
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.starts import printed_row
-from tests.paper.cases import exponential
+from tests.paper.cases import exponential, unheard
 
 
 def groups(*means, spread=0.1, times=(100.0, 200.0)):
@@ -78,5 +76,5 @@ def test_figure_3_over_a_short_time(monkeypatch, tmp_path):
 
 @pytest.mark.parametrize(("off", "alpha", "verdict"), [(0.1, "0.33", HOLDS), (0.1, "0.5", PARTLY), (0.5, "0.33", FAILS)])
 def test_the_initial_distance_is_of_the_order_of_mu(off, alpha, verdict):
-    torus = SimpleNamespace(series=SimpleNamespace(chain=Chain(32, alpha=alpha)), positions=lambda t: np.array([2.0, 2.0 * off]))
+    torus = SimpleNamespace(series=SimpleNamespace(chain=Chain(32, alpha=alpha)), Q=lambda t: np.array([2.0, 2.0 * off]))
     assert fig3.distance_claim(torus, np.array([2.0, 0.0])).verdict == verdict

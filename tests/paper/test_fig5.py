@@ -5,10 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from symfpu.files.progress import unheard
 from symfpu.paper import fig5
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
-from tests.paper.cases import exponential
+from tests.paper.cases import exponential, unheard
 
 
 def parted(level):

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from symfpu.figures.panels import Curve
-from symfpu.files.progress import unheard
 from symfpu.paper import breather_profiles, fig7, fig8, starts
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.starts import printed_row
-from tests.paper.cases import exponential
+from tests.paper.cases import exponential, unheard
 from tests.tolerances import PICTURE
 
 pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
@@ -91,7 +90,6 @@ def test_a_trajectory_leaves_the_breather_at_later_modes():
     assert breather_profiles.hierarchy_claim(spectra([0, 0, 4, 0, 0, 0, 0]), SEQUENCE).verdict == FAILS
 
 
-@pytest.mark.long
 def test_figure_7_over_a_short_time(monkeypatch, tmp_path):
     monkeypatch.setattr(fig7, "TIME", 2e3)
     figure = fig7.figure7(tmp_path, unheard)

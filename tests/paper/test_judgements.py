@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain, refine, torus_at_amplitudes
 from symfpu.dynamics.dimension import DECADES
 from symfpu.figures.alignment import alignment_panel
 from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY
@@ -13,7 +13,6 @@ from symfpu.paper.dimensions import (
     TorusForecast,
     confirms,
     indices_panel,
-    integrated_text,
     settled_after,
 )
 from symfpu.paper.judgements import (
@@ -25,10 +24,7 @@ from symfpu.paper.judgements import (
     parting_level,
     runs,
     same_profile,
-    sums_panel,
 )
-from symfpu.refinement.tori import refine
-from symfpu.tori.frequencies import torus_at_amplitudes
 from tests.paper.cases import alignment, exponential
 from tests.tolerances import SAMPLED_DECADES, WHOLE_NUMBERS
 
@@ -151,11 +147,6 @@ def test_runs_of_modes():
     assert runs(()) == ""
 
 
-def test_sums_are_a_panel_with_named_columns():
-    made = sums_panel("fig2c", "sums", 1, (np.array([1.0, 2.0]), np.array([1.0, 0.5])))
-    assert list(made.table()[1]) == [["mu_k_S1", 0, 1], ["mu_k_S1", 1, 2], ["mu_k_S2", 0, 1], ["mu_k_S2", 1, 0.5]]
-
-
 def test_alignment_panels_are_logarithms_already():
     made = alignment_panel("fig1e", "indices", alignment(2))
     assert not made.log_y
@@ -180,16 +171,6 @@ def test_what_is_foretold_is_confirmed_by_slopes_where_growth_is_seen(off, same)
     found = alignment(2)
     assert confirms(found, as_foretold(found, **off)) == same
     assert not confirms(alignment(2, growth=0.01), as_foretold(alignment(2, growth=0.01)))
-
-
-def test_claims_say_what_was_integrated_and_how_it_agrees():
-    found = alignment(2, T=1e6)
-    there = as_foretold(found, steeper=0.1, higher=0.5)
-    text = integrated_text(FigureIndices(found, there, there, confirmed=True))
-    assert "to t = 1e+06" in text
-    assert text.endswith("slopes are those foretold for the same frame, to 0.10; levels are off by up to 0.50 decades")
-    assert "slopes are not those foretold" in integrated_text(FigureIndices(found, there, there, confirmed=False))
-    assert "foretold" not in integrated_text(FigureIndices(found))
 
 
 def test_what_is_foretold_is_drawn_beyond_what_was_integrated():

@@ -1,14 +1,13 @@
 """What Toda teaches: the statements of docs/toda.md, single ones at reduced size; the whole study behind `long`."""
 
 import json
+from functools import partial
 
 import numpy as np
 import pytest
 
-from symfpu.breathers.balance import periodic_orbit
-from symfpu.chain.chain import Chain
-from symfpu.chain.potentials.toda import toda
-from symfpu.integrable.torus import toda_torus
+from symfpu import Chain, periodic_orbit, toda, toda_torus
+from symfpu.paper import toda_fig1, toda_orbits
 from symfpu.paper.claims_page import figure_markdown, figure_record
 from symfpu.paper.convergence_fig9 import series_end
 from symfpu.paper.printed import FIG9_BREATHER, TWO_TORUS
@@ -68,7 +67,6 @@ def test_chains_of_the_same_cubic_term(chains):
     assert both == integrable == [c3, 2 * c3**2 / 3]
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("name", RATIOS)
 def test_the_series_of_every_chain_has_its_pole(chains, name):
     study = series_study(chains[name], 24)
@@ -81,7 +79,6 @@ def test_the_torus_of_toda_exists_although_its_series_diverges(torus):
     assert float(torus.energy()) == pytest.approx(TODA_ENERGY, rel=10 * ROUNDING)
 
 
-@pytest.mark.long
 def test_toda_s_torus_passes_its_resonance(chains):
     """On both sides of it the detuning changes its sign, and the coefficient hardly changes."""
     second = ("0.390472", "0.390474")
@@ -91,7 +88,6 @@ def test_toda_s_torus_passes_its_resonance(chains):
     assert upper == pytest.approx(lower, rel=SMOOTH_SCAN)
 
 
-@pytest.mark.long
 def test_alpha_s_torus_is_torn_at_its_resonance(chains):
     lower, upper = (resonant_coefficient(refined_two_torus(chains["alpha"], omega)) for omega in ("0.390450", "0.390453"))
     assert lower < 0
@@ -125,7 +121,6 @@ def test_groups_of_toda_are_those_of_alpha(N, seeds):
     assert excited_groups(Chain(N, potential=toda(1)), seeds, 3) == excited_groups(Chain(N, alpha=1), seeds, 3)
 
 
-@pytest.mark.long
 def test_the_series_of_toda_s_breather_ends_before_it():
     (omega,) = FIG9_BREATHER.frequencies
     chain = Chain(FIG9_BREATHER.chain.N, potential=toda(FIG9_BREATHER.chain.alpha))
@@ -138,7 +133,6 @@ def test_the_series_of_toda_s_breather_ends_before_it():
     assert float(orbit.energy()) == pytest.approx(float(exact.energy), rel=100 * ROUNDING)
 
 
-@pytest.mark.long
 def test_gaps_drift_in_alpha_and_not_in_toda():
     chains = chains_of(FIG9_BREATHER.chain)
     alpha, exact = (trajectory_study(name, chains[name], T=1e3) for name in ("alpha", "Toda"))
@@ -147,7 +141,6 @@ def test_gaps_drift_in_alpha_and_not_in_toda():
     assert (alpha.drift()[:4] / alpha.gaps[0, :4]).max() < 1.3e-4  # the largest to t = 1e5
 
 
-@pytest.mark.long
 def test_tails_are_toda_s_and_open_gaps_alpha_s():
     study = torus_study(TWO_TORUS)
     tori = study.tori()
@@ -162,7 +155,6 @@ def test_tails_are_toda_s_and_open_gaps_alpha_s():
     assert study.exact_energy == pytest.approx(TODA_ENERGY, rel=ROUNDING)
 
 
-@pytest.mark.long
 def test_all_groups_are_alike_and_cross_terms_are_alpha_s():
     study = group_study()
     assert (study.cases, study.differing) == (83, ())
@@ -171,21 +163,29 @@ def test_all_groups_are_alike_and_cross_terms_are_alpha_s():
     assert study.cross_terms["alpha"] == pytest.approx(0.278803, rel=FIVE_DIGITS)
 
 
-@pytest.mark.long
-def test_residues_at_the_resonance(chains):
-    alpha = resonance_scan(chains["alpha"], SCANS["alpha"], None)
-    both = resonance_scan(chains["alpha and beta"], SCANS["alpha and beta"], None)
-    exact = resonance_scan(chains["Toda"], SCANS["Toda"], toda_resonance(chains["Toda"]))
+@pytest.fixture(scope="module")
+def scans(chains):
+    known = {"alpha": None, "alpha and beta": None, "Toda": toda_resonance(chains["Toda"])}
+    return {name: resonance_scan(chain, SCANS[name], known[name]) for name, chain in chains.items()}
+
+
+def test_residues_at_the_resonance(scans):
+    alpha, both, exact = scans["alpha"], scans["alpha and beta"], scans["Toda"]
     assert alpha.residue > -4 * both.residue > 0
     assert abs(exact.residue) < NO_RESIDUE * alpha.residue
     assert both.resonance == pytest.approx(exact.resonance, rel=SIX_PLACES)
 
 
-@pytest.mark.long
-def test_reproduce_toda(tmp_path):
+def test_reproduce_toda(scans, tmp_path, monkeypatch):
+    """The scans of the test above, orbits as long as the recurrence, two of the breathers."""
+    monkeypatch.setattr(toda_fig1, "_scan", lambda name, chain, progress: scans[name])
+    monkeypatch.setattr(toda_orbits, "trajectory_study", partial(trajectory_study, T=1e3))
+    monkeypatch.setattr(toda_orbits, "RECURRENCE_TIME", 1.25e4)
+    monkeypatch.setattr(toda_orbits, "RECURRENCE_LOOKS", 25001)
+    monkeypatch.setattr(toda_orbits, "BREATHER_FREQUENCIES", toda_orbits.BREATHER_FREQUENCIES[-2:])
     labels = set()
     figure = toda_page(tmp_path, lambda label, fraction: labels.add(label))
-    assert len(labels) >= 13
+    assert len(labels) >= 10
     assert [panel.name for panel in figure.panels] == [f"toda-{letter}" for letter in "abcdefghi"]
     record = json.loads(json.dumps(figure_record(figure), allow_nan=False))["numbers"]
     for name, time in RETURNS.items():

@@ -4,32 +4,8 @@ from functools import cache
 
 import numpy as np
 
-from symfpu.action_angle.foretold import foretold_indices
-from symfpu.borders.atlas import atlas
-from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.breathers.floquet import floquet
-from symfpu.chain.chain import Chain
-from symfpu.chain.propagation import excitation_sequence
-from symfpu.dynamics.alignment import AlignmentIndices, alignment_indices
-from symfpu.dynamics.orbits import integrate
-from symfpu.families.following import family
-from symfpu.families.normal_events import NormalEvent
-from symfpu.families.normal_family import NormalFamily
-from symfpu.integrable.invariants import toda_gaps, toda_invariants
-from symfpu.localization.profiles import fpu_trajectory
-from symfpu.normal.resonances import ParametricResonance
-from symfpu.normal.search import normal_modes
-from symfpu.proofs.certificates import prove_propagation
-from symfpu.refinement.tori import refine
-from symfpu.series.lindstedt import lindstedt
-from symfpu.series.travelling import travelling_waves
-from symfpu.spectral.analysis import frequency_analysis
-from symfpu.spectral.mapping import frequency_map
-from symfpu.sweeps.this_process import ThisProcess
-from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
-from symfpu.tori.frequencies import torus_at_amplitudes
-from symfpu.tori.ring_torus import travelling_torus
-from symfpu.tori.verdict import assess
+import symfpu
+from symfpu import Chain, amplitude_history, assess, breather_at_amplitude, family, fpu_trajectory, integrate, lindstedt, solve_amplitudes
 
 ALPHA = Chain(16, alpha="0.33")
 TODA = Chain(7, potential="toda:1/2")
@@ -64,38 +40,27 @@ def one_mode():
 
 @cache
 def toda_torus():
-    return torus_at_amplitudes(TODA, {1: "0.1", 2: "0.05"}, 5)
+    return symfpu.torus_at_amplitudes(TODA, {1: "0.1", 2: "0.05"}, 5)
 
 
 @cache
 def three_seeds():
-    return torus_at_amplitudes(Chain(9, alpha="0.3"), {1: "0.1", 2: "0.1", 3: "0.05"}, 3)
+    return symfpu.torus_at_amplitudes(Chain(9, alpha="0.3"), {1: "0.1", 2: "0.1", 3: "0.05"}, 3)
 
 
 @cache
 def refined():
-    return refine(solve_amplitudes(lindstedt(ALPHA, (1, 2), ("0.1961", "0.3904"), 8)))
+    return symfpu.refine(solve_amplitudes(lindstedt(ALPHA, (1, 2), ("0.1961", "0.3904"), 8)))
 
 
 @cache
 def ring():
-    return travelling_torus(travelling_waves(RING, (1,), ("0.69",), 6))
+    return symfpu.solve_amplitudes(symfpu.lindstedt(RING, (1,), ("0.69",), 6))
 
 
 @cache
 def normal():
-    return normal_modes(one_of_five())
-
-
-@cache
-def normal_line():
-    """Two stable tori and an unstable one, and where the first turns into the last, by hand."""
-    chain = Chain(N=4, alpha="0.5")
-    found = tuple(normal_modes(breather_at_amplitude(chain, 2, A)) for A in ("0.5", "0.75", "1"))
-    met = ParametricResonance("parametric", (1,), (1,), 0.0)
-    onset = NormalEvent("stability", met, 1, 0.5412, {2: 0.7706}, 0.9, begins=True)
-    crossed = NormalEvent("resonance", met, 0, 0.2, {2: 0.6}, 0.5)
-    return NormalFamily(found, (0.0, 0.5, 1.0), (crossed, onset))
+    return symfpu.normal_modes(one_of_five())
 
 
 @cache
@@ -108,20 +73,7 @@ def lines_found():
     """Two frequencies and their combinations, some too weak to tell."""
     chain = Chain(N=5, alpha="0.3")
     start = fpu_trajectory(chain, {1: "0.3", 3: "0.2"})
-    return frequency_analysis(integrate(chain, *start, 1000, step=0.25))
-
-
-@cache
-def borders_found():
-    """Three lengths of a chain, and one that is impossible."""
-    chains = [{"N": N, "beta": 1} for N in (1, 4, 6, 8)]
-    return atlas(chains, ["high:1"], 4, borders=["poles"], executor=ThisProcess())
-
-
-@cache
-def mapped():
-    """Three energies of a short chain."""
-    return frequency_map(Chain(N=5, alpha="0.3"), ("0.001", "0.01", "0.1"), T=500, step=0.25)
+    return symfpu.frequency_analysis(integrate(chain, *start, 1000, step=0.25))
 
 
 @cache
@@ -171,7 +123,7 @@ def pair():
 
 @cache
 def stable_floquet():
-    return floquet(breather())
+    return symfpu.floquet(breather())
 
 
 @cache
@@ -181,44 +133,44 @@ def indices():
     falls = np.minimum(0, -(np.log10(times) - 2))
     log10_gali = np.stack([-0.05 + 0 * falls, falls, 2 * falls], axis=1)
     lyapunov = np.log(times + 1) / times
-    return AlignmentIndices(ALPHA, times, log10_gali, lyapunov, 0.4, 1e-12)
+    return symfpu.AlignmentIndices(ALPHA, times, log10_gali, lyapunov, 0.4, 1e-12)
 
 
 @cache
 def foretold():
-    return foretold_indices(one_of_five(), np.geomspace(1, 1e6, 200), vectors=4)
+    return symfpu.foretold_indices(one_of_five(), np.geomspace(1, 1e6, 200), vectors=4)
 
 
 @cache
 def integrated():
     """The same frame, for a short time: a picture shows both."""
-    return alignment_indices(one_of_five().chain, *one_of_five().state(), 300, vectors=4, step=0.2, samples=64, frames=1)
+    return symfpu.alignment_indices(one_of_five().chain, *one_of_five().state(), 300, vectors=4, step=0.2, samples=64, frames=1)
 
 
 @cache
 def short_indices():
-    return alignment_indices(one_mode().chain, *one_mode().state(), 200, vectors=2, frames=1)
+    return symfpu.alignment_indices(one_mode().chain, *one_mode().state(), 200, vectors=2, frames=1)
 
 
 @cache
 def sequence():
-    return excitation_sequence(32, (3, 5), 6)
+    return symfpu.excitation_sequence(32, (3, 5), 6)
 
 
 @cache
 def proof():
-    return prove_propagation(8, (1, 4), 3, model="beta")
+    return symfpu.prove_propagation(8, (1, 4), 3, model="beta")
 
 
 @cache
 def invariants():
-    return toda_invariants(TODA, *fpu_trajectory(TODA, {1: "0.5"}))
+    return symfpu.toda_invariants(TODA, *fpu_trajectory(TODA, {1: "0.5"}))
 
 
 @cache
 def gaps():
     found = even_orbit()
-    return toda_gaps(found.chain, found.Q, found.P)
+    return symfpu.toda_gaps(found.chain, found.Q, found.P)
 
 
 @cache

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from symfpu import InputError
 from symfpu.breathers.floquet import ELLIPTIC, TRIVIAL
-from symfpu.errors import InputError
 from symfpu.plots.families import family_amplitudes, family_frequencies, family_multipliers, family_spectra
 from tests.plots.cases import pair, stable_family, unstable
 from tests.tolerances import LAST_DIGIT
@@ -72,12 +72,6 @@ def test_spectra_are_of_members_from_the_first_to_the_last(ax):
         assert line.get_ydata() == pytest.approx(spectrum / spectrum.sum(), rel=LAST_DIGIT)
     assert all(label for label in (ax.get_xlabel(), ax.get_ylabel()))
     assert len(ax.get_legend().get_texts()) == len(lines) <= 6
-
-
-@pytest.mark.parametrize("draw", [family_amplitudes, family_frequencies, family_multipliers, family_spectra])
-def test_what_is_no_family_is_refused(draw, ax):
-    with pytest.raises(InputError, match="a Family"):
-        draw("family", ax)
 
 
 def test_a_family_without_multipliers_has_no_picture_of_them(ax):

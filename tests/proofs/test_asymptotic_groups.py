@@ -8,11 +8,7 @@ import numpy as np
 import pytest
 import symengine as se
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.localization.laws import group_energy, profile_law
-from symfpu.proofs.asymptotic_groups import asymptotic_group_energy, asymptotic_profile
-from symfpu.proofs.asymptotics import asymptotic_energy
+from symfpu import Chain, InputError, asymptotic_energy, asymptotic_group_energy, asymptotic_profile, group_energy, profile_law
 from tests.tolerances import LIMIT_OF_LONG_CHAINS, SLOPE
 
 ALPHA, BETA = Chain("N", alpha=1), Chain("N", beta=1)

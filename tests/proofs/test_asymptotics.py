@@ -7,15 +7,19 @@ import pytest
 import symengine as se
 import sympy
 
-from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.chain.chain import Chain
+from symfpu import (
+    Chain,
+    InputError,
+    asymptotic_divisor,
+    asymptotic_energy,
+    asymptotic_term,
+    breather_at_amplitude,
+    breather_law,
+    closed_form,
+    lindstedt,
+)
 from symfpu.chain.length import mode_label, mode_of, seed_labels
 from symfpu.chain.symbols import energy_symbol
-from symfpu.errors import InputError
-from symfpu.localization.laws import breather_law
-from symfpu.proofs.asymptotics import asymptotic_divisor, asymptotic_energy, asymptotic_term
-from symfpu.series.closed_forms import closed_form
-from symfpu.series.lindstedt import lindstedt
 from tests.tolerances import SLOPE, SMALL_BREATHER, TYPED_LAW
 
 ALPHA, BETA, BOTH = Chain("N", alpha=1), Chain("N", beta=1), Chain("N", alpha=1, beta="1/3")

@@ -1,14 +1,12 @@
 """Proofs and refutations of the propagation rule."""
 
 import json
+import random
 
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.chain.propagation import coupling_sequence, excitation_sequence
-from symfpu.errors import InputError, SymfpuError
-from symfpu.proofs.certificates import prove_propagation, random_point
-from symfpu.series.lindstedt import lindstedt
+from symfpu import InputError, SymfpuError, coupling_sequence, excitation_sequence, prove_propagation
+from symfpu.proofs.certificates import random_point
 from tests.tolerances import ERROR_PROBABILITY
 
 
@@ -20,29 +18,6 @@ def test_proved_case():
     assert proof.undecided == ()
 
 
-@pytest.mark.parametrize(("N", "seeds", "mode"), [(6, (2, 3), 4), (8, (1, 4), 7), (8, (1, 2, 6), 7), (9, (1, 2, 7), 8)])
-def test_refuted_case_is_a_pair_with_sum_N_and_a_third_seed(N, seeds, mode):
-    proof = prove_propagation(N, seeds, 3, model="beta")
-    assert proof.verdict == "refuted"
-    assert [(e.mode, e.predicted, e.actual) for e in proof.exceptions] == [(mode, 1, 2)]
-    third = N - mode
-    assert third in seeds
-    assert any(l + m == N for l in seeds for m in seeds if third not in (l, m))
-
-
-@pytest.mark.parametrize(("N", "seeds", "model", "order"), [(6, (2, 3), "beta", 2), (7, (3, 5), "alpha", 3), (5, (1, 2), "alpha", 4)])
-def test_actual_orders_are_those_of_the_universal_form(N, seeds, model, order):
-    """By another ring: the first order at which a coefficient is not the zero polynomial in the L_q(nu)."""
-    series = lindstedt(Chain(N, **{model: 1}), seeds, order=order)
-    first = {}
-    for k, table in enumerate(series.coordinates):
-        for q in range(1, N):
-            if any(value != 0 for value in table[:, q - 1]):
-                first.setdefault(q, k)
-    proof = prove_propagation(N, seeds, order, model=model)
-    assert {q: k for k, modes in enumerate(proof.actual) for q in modes} == first
-
-
 def test_without_points_nothing_is_decided_but_what_the_couplings_forbid():
     proof = prove_propagation(8, (1, 4), 2, model="beta", points=0)
     assert proof.verdict == "undecided"
@@ -51,18 +26,19 @@ def test_without_points_nothing_is_decided_but_what_the_couplings_forbid():
     assert 7 not in {q for u in proof.undecided for q in u.orders if 1 in u.orders}
 
 
-def test_identities_close_what_couplings_leave_open(monkeypatch):
-    """With couplings that forbid nothing, the zero term of an exception is proved by the universal form instead."""
-    everything = [(1, 2, 3, 4, 5)] * 3
-    monkeypatch.setattr("symfpu.proofs.certificates.coupled_modes", lambda *_, **__: everything)
+@pytest.fixture
+def couplings_forbid_nothing(monkeypatch):
+    monkeypatch.setattr("symfpu.proofs.certificates.coupled_modes", lambda *_, **__: [(1, 2, 3, 4, 5)] * 3)
+
+
+def test_identities_close_what_couplings_leave_open(couplings_forbid_nothing):
+    """The zero term of an exception is proved by the universal form instead."""
     proof = prove_propagation(6, (2, 3), 2, model="beta")
     assert proof.verdict == "refuted"
     assert [(v.mode, v.orders, v.by) for v in proof.vanishing] == [(4, (1,), "identity")]
 
 
-def test_zero_without_a_proof_is_undecided_with_a_probability(monkeypatch):
-    everything = [(1, 2, 3, 4, 5)] * 3
-    monkeypatch.setattr("symfpu.proofs.certificates.coupled_modes", lambda *_, **__: everything)
+def test_zero_without_a_proof_is_undecided_with_a_probability(couplings_forbid_nothing, monkeypatch):
     monkeypatch.setattr("symfpu.proofs.certificates.IDENTITY_TERMS", 0)
     once, twice = (prove_propagation(6, (2, 3), 2, model="beta", points=n) for n in (1, 2))
     assert once.verdict == twice.verdict == "undecided"
@@ -81,8 +57,6 @@ def test_points_are_reproducible_and_independent():
 
 def test_roots_of_points_are_primitive():
     """Also where 4N has several prime factors."""
-    import random
-
     for N in (6, 15, 30):
         point = random_point(N, 2, 4, random.Random(N))
         assert point.prime % (4 * N) == 1
@@ -126,8 +100,6 @@ def test_bad_arguments_are_named(arguments, name):
 
 
 def test_order_too_high_for_exact_sums_says_so():
-    import random
-
     with pytest.raises(SymfpuError, match="take a lower order"):
         random_point(4096, 8, 60, random.Random(1))
 

@@ -7,7 +7,7 @@ from itertools import combinations_with_replacement
 import numpy as np
 import pytest
 
-from symfpu.chain.propagation import excitation_sequence
+from symfpu import excitation_sequence
 from symfpu.proofs.certificates import random_point
 from symfpu.proofs.flats import degree_of
 from symfpu.proofs.plus_terms import MINUS, PLUS, PlusResidues, PlusTerms, powers_of_degree

@@ -1,12 +1,9 @@
 """The checker of certificates, against a prover of its own: full tables over all monomials, tensors by the letter of Eq. transa."""
 
-import ast
 import copy
-import hashlib
 import json
 import os
 import re
-import sys
 from itertools import product
 from math import gcd, isqrt
 from pathlib import Path
@@ -14,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from symfpu.proofs.check_propagation import MODELS, SYMBOLS, Budget, Case, Point, Recursion, couplings, verify
+from symfpu.proofs.check_propagation.couplings import coupling_steps
 from symfpu.proofs.reading import CertificateError
+from tests.proofs.certificate_files import altered, sealed
 
 
 def delta(total, target):
@@ -172,14 +171,7 @@ def certificate(N, model, seeds, order, *, points=1, identity=(), undecided=()):
         "excited": excited,
         "vanishing": [{"mode": q, "orders": js, "by": by} for q, js, by in claims if js and by != "undecided"],
     }
-    return signed(body)
-
-
-def signed(body):
-    """The same with its digest."""
-    rest = {key: value for key, value in body.items() if key != "digest"}
-    text = json.dumps(rest, sort_keys=True, separators=(",", ":"))
-    return rest | {"digest": hashlib.sha256(text.encode()).hexdigest()}
+    return sealed(body)
 
 
 CERTIFICATES = {
@@ -220,16 +212,6 @@ def test_certificates_of_the_full_table_hold(check, name):
     lines = check(CERTIFICATES[name])
     assert SAYS[CERTIFICATES[name]["verdict"]] in lines[0]
     assert all(str(at["prime"]) in lines[1] for at in CERTIFICATES[name]["points"])
-
-
-def test_the_verdicts_are_those_meant():
-    assert {name: c["verdict"] for name, c in CERTIFICATES.items()} == {
-        "alpha": "proved",
-        "beta": "proved",
-        "refuted": "refuted",
-        "breather": "proved",
-        "undecided": "undecided",
-    }
 
 
 def test_the_refuted_case_is_the_cancellation_of_the_sums_0_and_2N():
@@ -293,10 +275,10 @@ def test_identities_are_accepted_where_they_hold_and_refused_where_not(check):
         + [{"mode": q, "orders": list(range(1, k)), "by": "couplings"}, {"mode": q, "orders": list(range(k, 5)), "by": "identity"}],
         key=lambda e: (e["mode"], e["by"]),
     )
-    refused(check, signed(body), f"mode {q} at order {k} is not zero")
+    refused(check, sealed(body), f"mode {q} at order {k} is not zero")
     body["vanishing"] = [e | {"by": "couplings"} for e in CERTIFICATES["breather"]["vanishing"] if e["mode"] != q]
     body["vanishing"] = sorted([*body["vanishing"], {"mode": q, "orders": [*range(1, 5)], "by": "couplings"}], key=lambda e: e["mode"])
-    refused(check, signed(body), f"mode {q} at order {k} does not vanish by 'couplings'")
+    refused(check, sealed(body), f"mode {q} at order {k} does not vanish by 'couplings'")
 
 
 # --- certificates that were altered
@@ -324,14 +306,7 @@ def alterations(value):
 
 
 def replaced(body, path, value):
-    body = copy.deepcopy(body)
-    if not path:
-        return value
-    place = body
-    for key in path[:-1]:
-        place = place[key]
-    place[path[-1]] = value
-    return body
+    return altered(body, path, lambda _: value) if path else value
 
 
 def still_true(body, path, value):
@@ -340,13 +315,13 @@ def still_true(body, path, value):
     Frequencies that the witnesses of their point do not feel (absent from them, or exchanged in one that is symmetric in both), and
     a witness at the conjugate monomial.
     """
-    altered = replaced(body, path, value)
+    changed = replaced(body, path, value)
     if path[:1] == ("points",) and path[2:3] == ("frequencies",):
-        at, s = altered["points"][path[1]], len(body["seeds"])
+        at, s = changed["points"][path[1]], len(body["seeds"])
         well_formed = isinstance(at["frequencies"], list) and [type(w) for w in at["frequencies"]] == [int] * s
-        return well_formed and all(0 <= w < at["prime"] for w in at["frequencies"]) and residues_hold(altered)
+        return well_formed and all(0 <= w < at["prime"] for w in at["frequencies"]) and residues_hold(changed)
     plain = isinstance(value, list) and all(type(e) is int for e in value)
-    return path[:1] == ("excited",) and path[2:] == ("monomial",) and plain and residues_hold(altered)
+    return path[:1] == ("excited",) and path[2:] == ("monomial",) and plain and residues_hold(changed)
 
 
 def residues_hold(body):
@@ -360,25 +335,29 @@ def value_at(body, path):
     return body
 
 
+FIELDS = [(name, path) for name, body in CERTIFICATES.items() for path, _ in walk(body) if path != ("digest",)]
+
+
 @pytest.mark.long
-@pytest.mark.parametrize(
-    ("name", "path"), [(name, path) for name, body in CERTIFICATES.items() for path, _ in walk(body) if path != ("digest",)]
-)
+@pytest.mark.parametrize(("name", "path"), FIELDS)
 def test_every_altered_field_is_refused_with_a_right_digest(check, name, path):
     body = CERTIFICATES[name]
     value = value_at(body, path)
     for other in alterations(value):
         if json.dumps(other) == json.dumps(value) or (not path and isinstance(other, dict) and "digest" not in other):
             continue
-        altered = replaced(body, path, other)
-        content = signed(altered) if isinstance(altered, dict) else altered
-        if isinstance(altered, dict) and still_true(body, path, other):
+        changed = replaced(body, path, other)
+        content = sealed(changed) if isinstance(changed, dict) else changed
+        if isinstance(changed, dict) and still_true(body, path, other):
             check(content)
         else:
             refused(check, content)
 
 
-@pytest.mark.parametrize("name", CERTIFICATES)
+DEAR = CERTIFICATES.keys() - {"undecided"}  # which has entries of every kind
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] if name in DEAR else []) for name in CERTIFICATES])
 def test_every_altered_field_is_refused_with_the_old_digest(check, name):
     body = CERTIFICATES[name]
     for path, value in walk(body):
@@ -391,50 +370,30 @@ def test_every_altered_field_is_refused_with_the_old_digest(check, name):
 def test_an_error_probability_is_a_claim_that_is_only_read(check, probability):
     """That a term was zero at every point, and with what probability of error, is not checked; the output says so."""
     body = replaced(CERTIFICATES["undecided"], ("undecided", 0, "error_probability"), probability)
-    assert "not checked" in check(signed(body))[-1]
+    assert "not checked" in check(sealed(body))[-1]
 
 
-@pytest.mark.parametrize(
-    "probability",
-    [
-        "0",
-        "0.0",
-        "0e-9",
-        "0.0e-09",
-        "1.1",
-        "2",
-        "1e1",
-        "1.3e+00",
-        "1.5e-00",
-        "-0.5",
-        "nan",
-        "inf",
-        "1/2",
-        " 0.5",
-        "0.5 ",
-        "1_0e-9",
-        "",
-        "1e-",
-        "\u0661e-9",
-    ],
-)
+OUTSIDE = "0 0.0 0e-9 0.0e-09 1.1 2 1e1 1.3e+00 1.5e-00 -0.5 nan inf 1/2 1_0e-9 1e- \u0661e-9"
+
+
+@pytest.mark.parametrize("probability", [*re.split(" ", OUTSIDE), "", " 0.5", "0.5 "])
 def test_an_error_probability_outside_0_to_1_is_refused(check, probability):
-    refused(check, signed(replaced(CERTIFICATES["undecided"], ("undecided", 0, "error_probability"), probability)))
+    refused(check, sealed(replaced(CERTIFICATES["undecided"], ("undecided", 0, "error_probability"), probability)))
 
 
 def test_couplings_and_identities_may_replace_each_other_where_both_hold(check):
     body = CERTIFICATES["refuted"]
     for i, claim in enumerate(body["vanishing"]):
-        check(signed(replaced(body, ("vanishing", i), claim | {"by": "identity"})))
+        check(sealed(replaced(body, ("vanishing", i), claim | {"by": "identity"})))
 
 
 def test_a_witness_may_be_another_but_not_of_a_seed_or_twice(check):
     body = CERTIFICATES["breather"]
     seed = {"mode": 1, "order": 0, "point": 0, "monomial": [1, 0], "residue": 1}
-    refused(check, signed(body | {"excited": [seed, *body["excited"]]}))
-    refused(check, signed(body | {"excited": [body["excited"][0], *body["excited"]]}))
+    refused(check, sealed(body | {"excited": [seed, *body["excited"]]}))
+    refused(check, sealed(body | {"excited": [body["excited"][0], *body["excited"]]}))
     conjugate = [e | {"monomial": e["monomial"][::-1]} for e in body["excited"]]
-    check(signed(body | {"excited": conjugate}))
+    check(sealed(body | {"excited": conjugate}))
 
 
 @pytest.mark.parametrize(
@@ -454,14 +413,14 @@ def test_a_witness_may_be_another_but_not_of_a_seed_or_twice(check):
 def test_wrong_primes_are_refused(check, prime, root):
     body = CERTIFICATES["refuted"]
     at = body["points"][0] | {"prime": prime, "root": root, "frequencies": [0, 0]}
-    refused(check, signed(body | {"points": [at]}), "no prime of use|20 digits")
+    refused(check, sealed(body | {"points": [at]}), "no prime of use|20 digits|a prime is out of its range")
 
 
 def test_roots_of_another_order_are_refused(check):
     body = CERTIFICATES["refuted"]
     p, g = body["points"][0]["prime"], body["points"][0]["root"]
     for d in range(24):
-        changed = signed(replaced(body, ("points", 0, "root"), pow(g, d, p)))
+        changed = sealed(replaced(body, ("points", 0, "root"), pow(g, d, p)))
         if d in (1, 11, 13, 23):
             check(changed)  # the same cos(q pi / N)
         elif gcd(d, 24) > 1:
@@ -476,21 +435,21 @@ def test_a_vanishing_divisor_is_refused(check):
     p, g, N = body["points"][0]["prime"], body["points"][0]["root"], body["N"]
     Omega = (pow(g, 2, p) - pow(g, -2, p)) * pow(g, -N, p) % p
     resonant = replaced(body, ("points", 0, "frequencies"), [Omega * pow(2, -1, p) % p])
-    refused(check, signed(resonant), "divisor of mode 2 at harmonic")
+    refused(check, sealed(resonant), "divisor of mode 2 at harmonic")
 
 
 def test_residues_are_below_the_prime(check):
     body = CERTIFICATES["refuted"]
     p, g, frequencies = body["points"][0].values()
-    refused(check, signed(replaced(body, ("points", 0, "root"), g + p)))
-    refused(check, signed(replaced(body, ("points", 0, "frequencies"), [frequencies[0] + p, frequencies[1]])))
-    refused(check, signed(replaced(body, ("excited", 0, "residue"), body["excited"][0]["residue"] + p)))
+    refused(check, sealed(replaced(body, ("points", 0, "root"), g + p)))
+    refused(check, sealed(replaced(body, ("points", 0, "frequencies"), [frequencies[0] + p, frequencies[1]])))
+    refused(check, sealed(replaced(body, ("excited", 0, "residue"), body["excited"][0]["residue"] + p)))
 
 
 def test_a_claim_without_orders_is_refused(check):
     body = CERTIFICATES["breather"]
     first = [{"mode": 2, "orders": [], "by": "couplings"}]
-    refused(check, signed(body | {"vanishing": first + body["vanishing"]}))
+    refused(check, sealed(body | {"vanishing": first + body["vanishing"]}))
 
 
 def test_a_witness_of_a_later_order_proves_nothing_of_an_earlier_one(check):
@@ -498,18 +457,13 @@ def test_a_witness_of_a_later_order_proves_nothing_of_an_earlier_one(check):
     body = copy.deepcopy(CERTIFICATES["refuted"])
     next(e for e in body["excited"] if e["mode"] == 4)["order"] = 1
     body["vanishing"] = [e for e in body["vanishing"] if e["mode"] != 4]
-    refused(check, signed(body | {"actual": body["rule"], "exceptions": [], "verdict": "proved"}), "degree of order 1")
+    refused(check, sealed(body | {"actual": body["rule"], "exceptions": [], "verdict": "proved"}), "degree of order 1")
 
 
 # --- files that are no certificates
 
 
 GOOD = json.dumps(CERTIFICATES["refuted"])
-
-
-@pytest.mark.parametrize("part", [0, 1, 2, 10, 100, 500, -1])
-def test_truncated_files_are_refused(check, part):
-    refused(check, GOOD[:part].encode())
 
 
 @pytest.mark.parametrize(
@@ -545,7 +499,7 @@ def test_other_files_are_refused_in_one_line(check, content):
 
 @pytest.mark.parametrize("version", [0, 3, 999, None, "1"])
 def test_the_message_names_an_unknown_schema_version_and_the_known_one(check, version):
-    body = signed(CERTIFICATES["refuted"] | {"schema": version, "news": []})
+    body = sealed(CERTIFICATES["refuted"] | {"schema": version, "news": []})
     refused(check, body, re.escape(f"schema version {version!r} is unknown: this checker supports versions 1, 2"))
 
 
@@ -587,7 +541,7 @@ def test_large_files_are_refused_before_they_are_read(tmp_path):
     ids=lambda change: str(change)[:40],
 )
 def test_absurd_sizes_are_refused(check, change, reason):
-    refused(check, signed(CERTIFICATES["refuted"] | change), reason)
+    refused(check, sealed(CERTIFICATES["refuted"] | change), reason)
 
 
 @pytest.mark.parametrize(
@@ -595,7 +549,33 @@ def test_absurd_sizes_are_refused(check, change, reason):
 )
 def test_absurd_monomials_are_refused(check, monomial):
     i = next(i for i, e in enumerate(CERTIFICATES["refuted"]["excited"]) if e["order"] == 2)
-    refused(check, signed(replaced(CERTIFICATES["refuted"], ("excited", i, "monomial"), monomial)))
+    refused(check, sealed(replaced(CERTIFICATES["refuted"], ("excited", i, "monomial"), monomial)))
+
+
+LARGE = {
+    ("excited", 0, "order"): "the order of a mode",
+    ("excited", 0, "mode"): "a mode that is excited",
+    ("excited", 0, "monomial", 0): "an exponent of a monomial",
+    ("vanishing", 0, "mode"): "a mode that vanishes",
+    ("vanishing", 0, "orders", 0): "an order at which a mode vanishes",
+    ("points", 0, "prime"): "a prime",
+    ("points", 0, "frequencies", 0): "a frequency",
+}
+
+
+@pytest.mark.parametrize("path", LARGE, ids=str)
+def test_a_large_number_is_refused_before_it_is_used(check, path):
+    """The order of one mode, 10^9, used to take 8.5 GB."""
+    certificate = next(c for c in CERTIFICATES.values() if c[path[0]])
+    refused(check, sealed(replaced(certificate, path, 10**20 - 1)), LARGE[path])
+
+
+def test_couplings_of_many_factors_count_as_many_steps():
+    """One product of 1000 factors has 4N signed sums for each of them."""
+    assert coupling_steps(4096, 2) == coupling_steps(4096, 3) == 0
+    assert coupling_steps(4096, 1000) > 1000 * coupling_steps(4096, 8)
+    with pytest.raises(CertificateError, match="2 million steps"):
+        Budget().spend(coupling_steps(4096, 1000) * 4)
 
 
 @pytest.mark.long
@@ -620,11 +600,11 @@ def test_work_without_end_is_refused(check):
         "vanishing": [],
         "undecided": [{"mode": q, "orders": list(range(1, place.get(q, order + 1))), "error_probability": "0.5"} for q in rest],
     }
-    refused(check, signed(body), "2 million steps")
+    refused(check, sealed(body), "2 million steps")
     body["vanishing"] = [e | {"by": "identity"} for e in body["undecided"][:1]]
     del body["vanishing"][0]["error_probability"]
     body |= {"undecided": body["undecided"][1:], "verdict": "refuted"}
-    refused(check, signed(body), "steps|not zero")
+    refused(check, sealed(body), "steps|not zero")
 
 
 def rule_by_sums(N, seeds, order):
@@ -635,19 +615,3 @@ def rule_by_sums(N, seeds, order):
         seen |= sums
         sums = {folded(a + sign * q, N) for a in sums for q in seeds for sign in (1, -1)}
     return sequence
-
-
-# --- the file itself
-
-
-BRANCHES = (ast.If, ast.IfExp, ast.For, ast.While, ast.BoolOp, ast.comprehension, ast.ExceptHandler)
-
-
-def test_the_checker_has_one_claim_a_function():
-    source = Path(sys.modules[verify.__module__].__file__).read_text()
-    functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
-    branches = {f.name: sum(isinstance(node, BRANCHES) for node in ast.walk(f)) for f in functions}
-    assert max(branches.values()) <= 10, branches
-    assert all(ast.get_docstring(f) for f in functions if f.name != "__init__")
-    assert not [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Constant) and isinstance(node.value, float)]
-    assert not [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Div)]

@@ -2,7 +2,6 @@
 
 import ast
 import copy
-import hashlib
 import json
 import random
 import re
@@ -12,12 +11,16 @@ from pathlib import Path
 
 import pytest
 
-from symfpu.certified.residual import prove_residual
-from symfpu.certified.stay import prove_stay
+from symfpu import prove_residual, prove_stay
 from symfpu.proofs import check_torus
 from symfpu.proofs.check_torus import Packing, Series, product, verify
+from symfpu.proofs.check_torus.budget import STEPS_A_BYTE, Budget
+from symfpu.proofs.check_torus.claim import read_claim
+from symfpu.proofs.check_torus.residual import residuals
+from symfpu.proofs.check_torus.series import by_pairs
 from symfpu.proofs.reading import READING_ERRORS, CertificateError
-from tests.test_pickle import two_angles
+from tests.proofs.certificate_files import sealed
+from tests.results import two_angles
 
 
 @cache
@@ -28,13 +31,6 @@ def stay():
 @cache
 def residual():
     return prove_residual(two_angles()).certificate()
-
-
-def sealed(data):
-    """With a digest made to fit."""
-    contents = {key: data[key] for key in data if key != "digest"}
-    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
-    return contents | {"digest": hashlib.sha256(text.encode()).hexdigest()}
 
 
 def checked(data, folder):
@@ -194,7 +190,7 @@ def test_packed_products_are_those_of_the_definition():
     packing = Packing([Series(one, 0), Series(other, 0)], 1)
     found = packing.unpacked(packing.packed(Series(one, 0)) * packing.packed(Series(other, 0)))
     assert found == {nu: x for nu, x in direct.items() if x}
-    assert product(Series(one, 0), Series({}, 0)).values == {}
+    assert product(Series(one, 0), Series({}, 0), Budget(1)).values == {}
 
 
 def test_no_number_of_it_is_rounded():
@@ -202,3 +198,37 @@ def test_no_number_of_it_is_rounded():
     assert len(files) > 5
     tree = [node for file in files for node in ast.walk(ast.parse(file.read_text()))]
     assert not [node for node in tree if isinstance(node, ast.Constant) and isinstance(node.value, float)]
+
+
+def test_one_far_harmonic_costs_little():
+    """One number of a certificate of 2 kB, -1628 for the harmonic of an angle, used to cost a minute."""
+    data = copy.deepcopy(residual())
+    data["torus"][-1][0] = -1628
+    steps = [spent_on_residual(data), spent_on_residual(residual())]
+    assert steps[0] < 4 * steps[1]
+
+
+def spent_on_residual(data):
+    claim = read_claim(data)
+    before = claim.budget.left
+    residuals(claim)
+    return before - claim.budget.left
+
+
+def test_both_ways_of_a_product_are_the_same():
+    few, many = {(1628, 0): 5, (0, 1): -7}, {(i, 3 - i): 2**i for i in range(4)}
+    packing = Packing([Series(few, 0), Series(many, 0)], 1)
+    exact = by_pairs(Series(few, 0), Series(many, 0))
+    assert packing.unpacked(packing.packed(Series(few, 0)) * packing.packed(Series(many, 0))) == exact
+    budget = Budget(1)
+    assert product(Series(few, 0), Series(many, 0), budget).values == exact
+    assert 0 < STEPS_A_BYTE - budget.left < packing.steps
+
+
+def test_work_beyond_the_size_of_the_file_is_refused(tmp_path):
+    """Harmonics of the energy in a box of 17 million places, named by four rows."""
+    data = copy.deepcopy(residual())
+    data |= {"N": 4, "seeds": [1, 2, 3], "omega": ["1", "1/2", "1/3"], "coefficients": ["1"]}
+    data["torus"] = [[1, 0, 0, 1, 1], [0, 1, 0, 1, 0], [0, 0, 1, 1, 1], [301, 501, 501, 0, 0]]
+    data["residual"] = [2**60, 0]
+    refused(sealed(data), tmp_path, "more steps than its size allows")

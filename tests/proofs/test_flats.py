@@ -5,10 +5,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from symfpu.proofs.families import equation_text, mode_text
-from symfpu.proofs.flats import Arrangement, Flat, degree_of, flats, rank
-
-LONGEST = 17  # beyond every representative of these cases
+from symfpu.proofs.flats import Arrangement, degree_of, flats, rank
 
 
 def signature(model, order, N, seeds):
@@ -24,14 +21,18 @@ def signature(model, order, N, seeds):
     return frozenset(found)
 
 
-def test_flats_are_what_the_seed_sets_of_all_short_chains_make():
-    for model, s, order in (("alpha", 1, 3), ("alpha", 2, 1), ("beta", 1, 2), ("beta", 2, 1)):
-        made = {}
-        for N in range(2, LONGEST):
-            for seeds in combinations(range(1, N), s):
-                made.setdefault(signature(model, order, N, seeds), (N, seeds))
-        found = flats(model, s, order)
-        assert sorted(made.values()) == sorted((flat.N, flat.seeds) for flat in found), (model, s, order)
+# every representative is below the last length
+SHORT = [("alpha", 1, 3, 17), ("alpha", 2, 1, 17), ("beta", 1, 2, 17), ("beta", 2, 1, 17)]
+LONGER = [pytest.param(*case, marks=pytest.mark.long) for case in (("alpha", 2, 3, 50), ("alpha", 3, 1, 28))]
+
+
+@pytest.mark.parametrize(("model", "s", "order", "longest"), [*SHORT, *LONGER])
+def test_flats_are_what_the_seed_sets_of_all_short_chains_make(model, s, order, longest):
+    made = {}
+    for N in range(2, longest):
+        for seeds in combinations(range(1, N), s):
+            made.setdefault(signature(model, order, N, seeds), (N, seeds))
+    assert sorted(made.values()) == sorted((flat.N, flat.seeds) for flat in flats(model, s, order))
 
 
 def sets_of_sums(longest, inside):
@@ -66,17 +67,6 @@ def test_other_regions():
         assert sets_of_sums(60, inside) == count
 
 
-@pytest.mark.long
-def test_flats_of_two_and_three_seeds_are_those_of_all_short_chains():
-    for model, s, order, longest in (("alpha", 2, 3, 50), ("alpha", 3, 1, 28)):
-        made = {}
-        for N in range(2, longest):
-            for seeds in combinations(range(1, N), s):
-                made.setdefault(signature(model, order, N, seeds), (N, seeds))
-        found = flats(model, s, order)
-        assert sorted(made.values()) == sorted((flat.N, flat.seeds) for flat in found), (model, s, order)
-
-
 def test_dimension_is_what_the_equations_leave():
     for model, s, order in (("alpha", 2, 2), ("beta", 2, 1)):
         arrangement = Arrangement(model, s, order)
@@ -85,11 +75,3 @@ def test_dimension_is_what_the_equations_leave():
             assert len(equations) == rank(equations) == s - flat.dimension
             for *normal, value in equations:
                 assert sum(n * q for n, q in zip(normal, flat.seeds, strict=True)) == value * flat.N
-
-
-def test_families_in_words():
-    assert equation_text((1, -4, -2)) == "2 N + q_1 = 4 q_2"
-    assert equation_text((1, 1, 1)) == "q_1 + q_2 = N"
-    half = Flat(8, (1, 4), 1)
-    assert mode_text(7, half, [(0, 2, 1)], 3) == "N - q_1"
-    assert mode_text(3, half, [(0, 2, 1)], 3) in ("q_2 - q_1", "N - q_1 - q_2")

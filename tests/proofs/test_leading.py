@@ -1,5 +1,6 @@
 """The Lemma of Appendix C and the expressions of Appendix D, as exact identities."""
 
+import pickle
 from itertools import combinations, permutations, product
 
 import numpy as np
@@ -7,22 +8,11 @@ import pytest
 import symengine as se
 
 import symfpu.proofs.leading
+from symfpu import Chain, InputError, coupling_sequence, excitation_sequence, leading_term, lemma_holds, lindstedt
 from symfpu.algebra.formulas import expressions, multiplier_symbol
 from symfpu.algebra.program_values import terms_of
-from symfpu.chain.chain import Chain
-from symfpu.chain.propagation import coupling_sequence, excitation_sequence
-from symfpu.errors import InputError
-from symfpu.proofs.leading import (
-    LeadingTerm,
-    appendix_d,
-    kernel_trees,
-    leading_factor,
-    leading_kernel,
-    leading_term,
-    leading_terms,
-    lemma_holds,
-)
-from symfpu.series.lindstedt import lindstedt
+from symfpu.proofs.kernel_trees import appendix_d, count_trees, kernel_trees
+from symfpu.proofs.leading import LeadingTerm, leading_factor, leading_kernel, leading_terms
 
 ORDER = {"alpha": 4, "beta": 2}
 
@@ -79,7 +69,7 @@ def test_lemma(model, N, seeds):
 
 @pytest.mark.parametrize("model", ["alpha", "beta"])
 def test_lemma_for_all_small_seed_sets(model):
-    for N in range(2, 7):
+    for N in range(2, 6):
         for seeds in (chosen for s in (1, 2) for chosen in combinations(range(1, N), s)):
             predicted = sorted(coupled(N, seeds, model, ORDER[model]))
             assert lemma_holds(chain_of(model, N), seeds, ORDER[model]) == dict.fromkeys(predicted, True), (N, seeds)
@@ -206,16 +196,6 @@ def test_kernel_sums_over_leading_modes_only():
     assert symbols == {multiplier_symbol(4, (0, 2)), multiplier_symbol(6, (0, 3))}
 
 
-@pytest.mark.parametrize(("model", "order"), [("alpha", 4), ("alpha", 3), ("beta", 2)])
-def test_kernel_is_homogeneous_of_degree_k_minus_1(model, order):
-    chain, seeds, x = chain_of(model, 16), (1, 2), se.Symbol("x")
-    q = max(coupled(16, seeds, model, order))
-    kernel = leading_kernel(chain, seeds, q, (2,) * (1 + chain.degree_step * order), (1,) * (1 + chain.degree_step * order))
-    value = kernel.subs(dict.fromkeys(kernel.free_symbols, x))
-    assert value != 0
-    assert se.expand(value / x ** (order - 1)).is_Number
-
-
 def tree_kernel(chain, seeds, tree, block):
     """One product of K by mode, from its shape: the oracle of `kernel_trees`; sums over m in D_l are taken."""
     if not tree:
@@ -264,6 +244,44 @@ def test_shapes_of_appendix_d():
     assert kernel_trees(3, 2) == {(two, ()): 4, (one, one): 1}
     assert sum(kernel_trees(4, 2).values()) == 14
     assert kernel_trees(2, 3) == {(((), (), ()), (), ()): 3}
+
+
+@pytest.mark.parametrize("factors", [2, 3])
+def test_shapes_are_counted_before_they_are_listed(factors):
+    assert [count_trees(k, factors, 1) for k in range(9)] == [len(kernel_trees(k, factors)) for k in range(9)]
+
+
+def test_trees_of_two_colours_are_those_that_are_listed():
+    """Every leaf of a shape has one of two colours; equal subtrees are a multiset."""
+
+    def coloured(tree):
+        if not tree:
+            return {0, 1}
+        return {tuple(sorted(parts, key=repr)) for parts in product(*map(coloured, tree))}
+
+    for order, factors in product(range(1, 5), (2, 3)):
+        trees = set().union(*map(coloured, kernel_trees(order, factors)))
+        assert len(trees) == count_trees(order, factors, 2)
+
+
+@pytest.mark.parametrize(
+    ("call", "reason"),
+    [
+        (lambda: kernel_trees(40, 2), "order = 40.*10,000 shapes"),
+        (lambda: appendix_d(10_000), "10,000 shapes"),
+        (lambda: leading_term(Chain(64, alpha=1), (1,), 60), "q = .*take a lower order, or a mode nearer"),
+        (lambda: leading_terms(Chain(64, alpha=1), (1,), 60), "order = .*take a lower order"),
+        (lambda: leading_term(Chain(81, beta=1), (1, 2), 30), "of order 7.*2,000,000 products"),
+        (lambda: leading_term(Chain(81, beta=1), (1, 2, 3, 4, 5), 55), "of order 5.*2,000,000 products"),
+    ],
+)
+def test_products_without_end_are_refused(call, reason):
+    with pytest.raises(InputError, match=reason):
+        call()
+
+
+def test_orders_beyond_the_last_mode_cost_nothing():
+    assert leading_terms(Chain(6, alpha=1), (1,), 1000).keys() == leading_terms(Chain(6, alpha=1), (1,), 5).keys()
 
 
 def test_appendix_d_as_printed():
@@ -381,3 +399,10 @@ def test_kernels_are_nodes_of_the_program(couplings, seeds, order):
             assert se.expand(factor * value - (-1) ** term.order * kernels) == 0
             compared += 1
     assert compared > order
+
+
+def test_a_term_goes_to_other_processes():
+    term = leading_terms(Chain(8, alpha="0.3"), (1, 2), 3)[5]
+    returned = pickle.loads(pickle.dumps(term))
+    assert repr(returned) == repr(term)
+    assert returned.expression() == term.expression()

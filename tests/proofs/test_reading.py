@@ -5,9 +5,13 @@ from fractions import Fraction
 
 import pytest
 
+from symfpu import Chain, breather_at_amplitude, prove_existence, prove_for_all_N, prove_propagation, prove_residual, prove_stability
+from symfpu.proofs import check_every_length, check_existence, check_propagation, check_stability, check_torus
+from symfpu.proofs.checkers import CHECKERS, verify_certificate
 from symfpu.proofs.reading import CertificateError, Kind, check_kind, dyadic, fraction, need, read_kind, text_of, verified, whole
 from symfpu.proofs.rounding import scientific, up
-from tests.proofs.test_forgeries import sealed
+from tests import results
+from tests.proofs.certificate_files import moved, reason, sealed
 
 KIND = Kind("some certificate", 3, {"format", "schema", "value", "digest"})
 GOOD = sealed({"format": "some certificate", "schema": 3, "value": [1, -2, "1/2"]})
@@ -111,3 +115,34 @@ def test_numbers_in_decimals_are_not_below_the_true_ones(x, digits, text):
 
 def test_up_is_the_least_integer_not_below():
     assert [up(x) for x in (Fraction(1, 2), Fraction(-1, 2), Fraction(4, 2), 3)] == [1, 0, 2, 3]
+
+
+# every kind of certificate
+
+VERIFY = {of.FORMAT: of.verify for of in (check_every_length, check_existence, check_propagation, check_stability, check_torus)}
+MADE = {
+    check_every_length.FORMAT: lambda: prove_for_all_N("beta", 2, 1),
+    check_existence.FORMAT: lambda: prove_existence(results.orbit()),
+    check_propagation.FORMAT: lambda: prove_propagation(8, (1, 4), 3, model="beta"),
+    check_stability.FORMAT: lambda: prove_stability(breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.2")),
+    check_torus.FORMAT: lambda: prove_residual(results.two_angles()),
+}
+
+
+@pytest.mark.parametrize("kind", CHECKERS)
+@pytest.mark.parametrize("text", ["", "{}", "[]", "[1, 2]", '{"format": 1}', '{"format": "KIND"}', "\x00", "1.5", "x" * 10])
+def test_what_is_no_certificate_is_refused(kind, text, tmp_path):
+    path = tmp_path / "c.json"
+    path.write_text(text.replace("KIND", kind))
+    for verify in (VERIFY[kind], verify_certificate):
+        for place in (path, tmp_path, tmp_path / "none"):
+            with pytest.raises(CertificateError):
+                verify(place)
+
+
+@pytest.mark.parametrize("kind", CHECKERS)
+def test_a_certificate_finds_its_checker(kind, tmp_path):
+    MADE[kind]().write(tmp_path / "c.json")
+    assert verify_certificate(tmp_path / "c.json") == VERIFY[kind](tmp_path / "c.json")
+    data = json.loads((tmp_path / "c.json").read_text())
+    assert "digest" in reason(verify_certificate, data | {"digest": moved(data["digest"])}, tmp_path)

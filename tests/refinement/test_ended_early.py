@@ -4,15 +4,12 @@ import numpy as np
 import pytest
 import scipy.sparse.linalg
 
+from symfpu import Chain, NoTorus, refine_at_amplitudes, torus_at_amplitudes
 from symfpu.borders import newton_end
 from symfpu.borders.point import Ray
-from symfpu.chain.chain import Chain
 from symfpu.refinement import linear_system, newton, refined_torus
-from symfpu.refinement.refined_torus import ENDED_EARLY, USEFUL, NoTorus, ended_early
-from symfpu.refinement.tori import refine_at_amplitudes
-from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.refinement.refined_torus import ENDED_EARLY, USEFUL, ended_early
 from tests.tolerances import REFINED_COEFFICIENT
-from tests.tori.test_ring_torus import torus as waves
 
 CHAIN, NEAR, WANTED = Chain(8, alpha="0.3"), {1: "0.29", 3: "0.14"}, {1: "0.3", 3: "0.15"}
 KRYLOV = scipy.sparse.linalg.gmres
@@ -119,22 +116,13 @@ def whole_then_none(monkeypatch):
     return [1] * sizes.count(sizes[0]) + [0.0]
 
 
-def test_of_a_ring_likewise(solver):
-    near = waves(9, (1, 4), (1.5e-3, 2e-3), 4, beta="0.5")
-    wanted = {q: repr(1.01 * float(a)) for q, a in near.amplitudes.items()}
-    solver(1, 1, 0.0)
-    found = refine_at_amplitudes(near, wanted)
-    assert ended_early(found)
-    assert found.residual() < USEFUL
-
-
 def test_a_border_does_not_take_it_for_a_torus(solver, monkeypatch):
     """There a smaller step is tried."""
     ray, place = Ray(Chain(8, beta="0.3"), (1, 2), 2), 0.01
-    first = ray.torus(place, None)
-    assert newton_end._refined(ray, first, place, newton_end.MOST_HARMONICS).warnings == ()
+    first, tori = ray.torus(place, None), newton_end._Tori(ray, one_family=False)
+    assert tori.refined(first, place, newton_end.MOST_HARMONICS).warnings == ()
     solver(1, 1, 1, 0.0)
     early = refine_at_amplitudes(guess(), WANTED)
     monkeypatch.setattr(newton_end, "refine_at_energy", lambda *_, **__: early)
     with pytest.raises(NoTorus, match=ENDED_EARLY):
-        newton_end._refined(ray, first, place, newton_end.MOST_HARMONICS)
+        tori.refined(first, place, newton_end.MOST_HARMONICS)

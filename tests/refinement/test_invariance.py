@@ -6,9 +6,10 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.refinement import couplings
-from symfpu.refinement.invariance import InvarianceEquation, rational
+from symfpu import Chain
+from symfpu.numbers.long_doubles import rational
+from symfpu.refinement import couplings, lattice
+from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated
 from tests.tolerances import EPS, LAST_DIGIT, ROUNDING
 
@@ -78,14 +79,6 @@ def test_the_potential_is_that_of_the_chain(chain, seeds):
     assert_close(equation.potential_slope(Q.astype(np.longdouble)), -chain.accelerations(Q))
 
 
-@pytest.mark.parametrize(("chain", "seeds"), CASES, ids=repr)
-def test_doubles_and_long_doubles_agree(chain, seeds):
-    equation, c = equation_and_coefficients(chain, seeds, low=3, radius=3)
-    short, long = equation.force(c), equation.force(c.astype(np.longdouble))
-    assert (short.dtype, long.dtype) == (np.float64, np.longdouble)
-    assert_close(short, long)
-
-
 def test_long_doubles_have_all_their_digits():
     """Against accelerations of 30 digits at three angles; the harmonic zero takes part."""
     chain, seeds = Chain(5, alpha="1/3", beta="0.7"), (3,)
@@ -116,15 +109,6 @@ def test_a_lattice_gives_values_and_takes_them_back(s, kind):
     assert_close(lattice.coefficients(values), c, rounding)
 
 
-@pytest.mark.parametrize("K", range(1, 13))
-def test_harmonics_up_to_three_halves_of_the_highest_do_not_fold(K):
-    """What OVERSAMPLING promises: of cos(m theta), m <= 1.5 K, the chosen coefficients are exact."""
-    lattice = Lattice(np.arange(K + 1)[:, None])
-    for m in range(int(1.5 * K) + 1):
-        values = np.cos(2 * np.pi * m * np.arange(lattice.points) / lattice.period)[None]
-        assert_close(lattice.coefficients(values)[:, 0], (np.arange(K + 1) == m).astype(float), scale=1)
-
-
 @pytest.mark.parametrize("highest", [(5,), (4, 2), (2, 3, 1), (2, 1, 1, 2)])
 def test_no_two_harmonics_of_a_lattice_coincide(highest):
     """Of all up to OVERSAMPLING / 2 times the chosen ones, counted here one by one; nor does one meet the middle of the period."""
@@ -138,6 +122,16 @@ def test_no_two_harmonics_of_a_lattice_coincide(highest):
     assert len(np.unique(places)) == len(larger)
     assert lattice.period // 2 not in places
     assert lattice.period < 4 * len(larger)
+
+
+def test_a_clash_of_the_last_harmonics_is_found():
+    """Where the first ones, in portions that grow, are all different."""
+    numbers = np.arange(3 * lattice.FIRST_TRIED)[:, None]
+    generator, period = np.array([1]), len(numbers)
+    assert lattice._distinct(numbers, generator, period)
+    clash = np.append(numbers, [[period]], axis=0)
+    assert not lattice._distinct(clash, generator, period)
+    assert not lattice._distinct(np.append(numbers, numbers[-1:], axis=0), generator, 2 * period)
 
 
 def test_all_harmonics_have_a_place_in_the_spectrum():

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain
 from symfpu.numbers.arithmetic import MULTIPRECISION
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.kronecker import Box, KroneckerForce
@@ -46,11 +46,11 @@ def test_the_force_is_that_of_the_closed_law_within_its_bound(name):
     box = Box([4 if len(seeds) > 2 else 8] * len(seeds), whole=True)
     reach = 0.25
     with mpmath.workprec(2 * BITS):
-        force = KroneckerForce(chain, box, BITS, reach)
+        force = KroneckerForce(InvarianceEquation(chain, seeds, harmonics).projection, box, BITS, reach)
         c = np.array([[force.fixed(mpmath.mpf(x)) for x in row] for row in doubles], dtype=object)
         wanted = box.harmonics
         values, off = force.force(harmonics, c, wanted)
-        allowed = InvarianceEquation(chain, seeds, harmonics).allowed(wanted)
+        allowed = InvarianceEquation(chain, seeds, wanted).mask
         found = np.array([[mpmath.ldexp(int(x), -BITS) for x in row] for row in np.where(allowed, values, 0)], dtype=object)
         limit = [mpmath.ldexp(int(x), -BITS) for x in off]
         exact = np.array([[mpmath.mpf(x) for x in row] for row in doubles], dtype=object)
@@ -63,24 +63,31 @@ def test_the_force_is_that_of_the_closed_law_within_its_bound(name):
             assert max(left) < KRONECKER_BOUND * max(abs(anharmonic))
 
 
-@pytest.mark.parametrize("whole", [False, True])
-@pytest.mark.parametrize("highest", [(3,), (2, 4), (2, 1, 3)])
-def test_harmonics_of_a_product_in_the_box_are_apart(highest, whole):
-    """Of two functions in the box, against the convolution."""
-    box = Box(highest, whole=whole)
-    random = np.random.default_rng(1)
-    rows = box.harmonics
-    functions = []
-    for _ in range(2):
-        half = {tuple(nu): int(x) for nu, x in zip(rows.tolist(), random.integers(-9, 9, len(rows)), strict=True)}
-        functions.append({**half, **{tuple(-n for n in nu): x for nu, x in half.items()}})
-    one, two = (box.packed(np.array([2 * f[tuple(nu)] for nu in rows.tolist()], dtype=object)) for f in functions)
-    product, _ = box.product(one, two, 2)
-    for nu, value in zip(rows.tolist(), product, strict=True):
-        pairs = ((mu, tuple(n - m for n, m in zip(nu, mu, strict=True))) for mu in functions[0])
-        expected = sum(functions[0][mu] * functions[1].get(rest, 0) for mu, rest in pairs)
-        assert value == expected
-        assert box.rows(np.array([nu]))[0] == rows.tolist().index(nu)
+def test_the_force_on_travelling_waves_is_that_of_their_one_function():
+    """N^(1/2) Omega_m times the tension alpha r^2, but for its mean, which drives nothing: at angles of its own."""
+    chain, harmonics = Chain(7, alpha="3/10", ends="periodic"), np.array([[1], [2]])
+    with mpmath.workprec(2 * BITS):
+        there = InvarianceEquation(chain, (2,), harmonics).projection
+        force = KroneckerForce(there, Box([4], whole=True), BITS, 0.25)
+        exact = [mpmath.mpf("0.25"), mpmath.mpf("-0.03125")]
+        c = np.array([[force.fixed(x)] for x in exact], dtype=object)
+        wanted = np.arange(5)[:, None]
+        values, off = force.force(harmonics, c, wanted)
+        linear = [chain.linear_frequency(2 * nu % 7) for nu in range(5)]
+        heights = [Omega * x / mpmath.sqrt(7) for Omega, x in zip(linear[1:3], exact, strict=True)]
+        mean = sum(x**2 for x in heights) / 2
+        assert values[0, 0] == 0
+        for theta in (mpmath.mpf("0.3"), mpmath.mpf(2)):
+            cosines = [mpmath.cos(nu * theta) for nu in range(5)]
+            r = mpmath.fdot(heights, cosines[1:3])
+            pairs = zip(values[1:, 0], linear[1:], cosines[1:], strict=True)
+            found = sum(mpmath.ldexp(int(x), -BITS) / (mpmath.sqrt(7) * Omega) * y for x, Omega, y in pairs)
+            assert abs(found - 3 * (r**2 - mean) / 10) < mpmath.ldexp(int(off[0]), -BITS)
+        doubled = np.concatenate([harmonics, harmonics + 2])
+        table = np.concatenate([c, 0 * c])
+        squares = force.squares(doubled)[:, 0]
+        assert [mpmath.ldexp(int(x), -BITS) for x in squares] == pytest.approx([float(w) ** 2 for w in linear[1:]])
+        assert (force.force(doubled, table, wanted)[0] == values).all()
 
 
 def test_what_is_cut_off_is_counted():
@@ -88,8 +95,29 @@ def test_what_is_cut_off_is_counted():
     chain = Chain(2, alpha=1)
     harmonics = np.array([[1]])
     with mpmath.workprec(2 * BITS):
-        force = KroneckerForce(chain, Box([1], whole=True), BITS, 1)
+        force = KroneckerForce(InvarianceEquation(chain, (1,), harmonics).projection, Box([1], whole=True), BITS, 1)
         _, off = force.force(harmonics, np.array([[force.fixed(mpmath.mpf("0.1"))]], dtype=object), harmonics)
         stretch = mpmath.mpf("0.1") * chain.linear_frequency(1) * mpmath.cospi(mpmath.mpf(1) / 4)
         back = 2 * chain.linear_frequency(1) * mpmath.cospi(mpmath.mpf(1) / 4)
         assert back * stretch**2 / 2 < mpmath.ldexp(int(off[0]), -BITS) < back * stretch**2
+
+
+def test_the_bound_counts_the_rounding_of_what_takes_modes_to_bonds():
+    """A long wave has larger amplitudes than stretches: the table of its stretches in 80 bits, rounded, is what the force is off by."""
+    N, amplitude = 64, 50_000
+    chain, harmonics = Chain(N, alpha="1/3"), np.array([[1]])
+    wanted = np.arange(3)[:, None]
+    there = InvarianceEquation(chain, (1,), harmonics).projection
+    values = []
+    for bits in (80, 200):
+        with mpmath.workprec(2 * bits):
+            force = KroneckerForce(there, Box([2], whole=True), bits, 256.0)
+            c = np.zeros((1, N - 1), dtype=object)
+            c[0, 0] = amplitude << bits
+            found, off = force.force(harmonics, c, wanted)
+            values.append([found >> (bits - 80), off])
+    (coarse, limit), (fine, _) = values
+    allowed = InvarianceEquation(chain, (1,), wanted).mask
+    differences = np.where(allowed, abs(coarse - fine), 0).max(axis=0)
+    assert (differences <= limit).all()
+    assert differences.max() > 0

@@ -1,14 +1,17 @@
 """The equation of travelling waves: its derivatives, its blocks, and what it makes of the particles of a ring."""
 
+from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 
 import numpy as np
 import pytest
 
+from symfpu import FourierTorus
 from symfpu.refinement.conditions import Amplitude, AmplitudeRatio, Energy, EnergyRatio, FrequencyShift
-from symfpu.refinement.waves import WaveEquation
-from symfpu.tori.ring_torus import RingTorus
-from tests.refinement.test_conditions import RICHARDSON, STEP
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import Lattice, places_of
+from tests.refinement.test_conditions import RICHARDSON, STEP, derivative
 from tests.refinement.test_invariance import ball
 from tests.tolerances import FOURTEEN_DIGITS, ROUNDING
 from tests.tori.test_ring_torus import ring
@@ -20,7 +23,7 @@ SEEDS = (2, -3)
 @cache
 def made(law, reach=3):
     """An equation with shifts and random coefficients of all harmonics up to sum |nu| = reach."""
-    equation = WaveEquation(ring(7, **LAWS[law]), SEEDS, ball(2, 3))
+    equation = InvarianceEquation(ring(7, **LAWS[law]), SEEDS, ball(2, 3))
     draw = np.random.default_rng(4)
     there = equation.mask & (np.abs(equation.harmonics).sum(axis=1) <= reach)[:, None]
     c = np.where(there, draw.normal(scale=0.03, size=there.shape), 0)
@@ -28,15 +31,19 @@ def made(law, reach=3):
     return equation, c.astype(np.longdouble), np.array([0.01, -0.02], dtype=np.longdouble)
 
 
+def plain_waves(N, seeds, radius):
+    """An equation of alpha on a ball, and coefficients 0.1 of the shortest harmonics."""
+    equation = InvarianceEquation(ring(N, alpha="0.3"), seeds, ball(2, radius))
+    low = equation.mask & (np.abs(equation.harmonics).sum(axis=1) <= 1)[:, None]
+    return equation, np.where(low, 0.1, 0.0)
+
+
 def torus(law):
     """The particles of these coefficients."""
     equation, c, shifts = made(law, 1)
     moving = equation.mask[:, 0]
-    modes = equation.harmonics[moving] @ np.array(SEEDS)
-    signs = np.sign(np.sin(np.pi * modes / 7))
-    omega = tuple(map(float, equation.seed_frequencies + shifts))
-    sines = signs * c[moving, 0].astype(float)
-    return RingTorus(equation.chain, SEEDS, omega, dict.fromkeys(SEEDS, 0.0), {}, equation.harmonics[moving], modes, sines)
+    omega = tuple(map(Fraction, map(float, equation.seed_frequencies + shifts)))
+    return FourierTorus(equation.chain, SEEDS, omega, equation.harmonics[moving], c[moving].astype(float), travels=True)
 
 
 @pytest.mark.parametrize("law", ["both", "even"])
@@ -47,20 +54,22 @@ def test_force_and_energies_are_those_of_the_particles(law):
     """
     equation, c, shifts = made(law, 1)
     plain, number = torus(law), 12
-    forces, H, harmonic = np.zeros(len(plain.sines)), 0.0, 0.0
-    for theta in plain._angle_grid(number):
-        Q, P = plain._sums(theta), plain._sums(theta, -1j * plain._rates)
+    waves = plain.harmonics @ np.array(SEEDS)
+    forces, H, harmonic = np.zeros(len(plain.cosines)), 0.0, 0.0
+    for theta in plain.angle_grid(number):
+        turned = [replace(plain, phases=dict(zip(SEEDS, angles, strict=True))) for angles in theta]
+        Q, P = (np.array(values) for values in zip(*(torus.state() for torus in turned), strict=True))
         x = plain.chain.positions(Q)
         pull = plain.chain.positions(plain.chain.accelerations(Q))
         r = np.roll(x, -1, axis=1) - x
         linear = r - np.roll(r, 1, axis=1)
         j = np.arange(7)
-        phases = 2 * np.pi / 7 * np.multiply.outer(plain.modes, j) - (theta @ plain.harmonics.T)[:, :, None]
+        phases = 2 * np.pi / 7 * np.multiply.outer(waves, j) - (theta @ plain.harmonics.T)[:, :, None]
         forces += ((pull - linear)[:, None, :] * np.sin(phases)).sum(axis=(0, 2))
         H += plain.chain.energy(Q, P).sum()
         harmonic += plain.chain.harmonic_energies(Q, P).sum()
     points = number**2
-    expected = -2 * forces / (points * 7**0.5) * np.sign(np.sin(np.pi * plain.modes / 7))
+    expected = -2 * forces / (points * 7**0.5) * np.sign(np.sin(np.pi * waves / 7))
     found = equation.force(c)[equation.mask].astype(float)
     assert np.abs(found - expected).max() < FOURTEEN_DIGITS
     for kind, total in ((False, H), (True, harmonic)):
@@ -89,6 +98,17 @@ def test_blocks_and_sparse_parts_are_the_derivative(law):
     assert np.allclose((difference / (2 * STEP)).astype(float), along, rtol=0, atol=STEP.astype(float))
 
 
+def test_what_an_even_potential_forbids_has_no_force():
+    """On any lattice: there products of long harmonics fold onto those of even length."""
+    equation, c, _ = made("even")
+    grid = Lattice(ball(2, 4))
+    there = np.zeros((len(grid.harmonics), 1))
+    there[places_of(equation.harmonics, grid.harmonics)] = c
+    force, odd = equation.force_on(grid, there), grid.harmonics.sum(axis=1) % 2 == 1
+    assert not force[~odd].any()
+    assert force[odd].any()
+
+
 def conditions(law):
     equation, c, shifts = made(law)
     H, _ = equation.energy(c, shifts, harmonic=False)
@@ -110,19 +130,6 @@ def test_gradients_are_derivatives(law, kind):
     by_cosine, by_shift = condition.gradient(equation, c, shifts)
     draw = np.random.default_rng(6)
     dc, dw = np.where(equation.mask, draw.normal(size=c.shape), 0), draw.normal(size=2)
-
-    def slope(h):
-        up, down = (condition.value(equation, c + sign * h * dc, shifts + sign * h * dw) for sign in (1, -1))
-        return (up - down) / (2 * h)
-
-    expected = (4 * slope(STEP) - slope(2 * STEP)) / 3
+    expected = derivative(lambda h: condition.value(equation, c + h * dc, shifts + h * dw))
     given = (by_cosine * dc).sum() + by_shift @ dw
     assert abs(given - expected) < RICHARDSON * max(1, abs(given)) * 100
-
-
-def test_mode_zero_and_what_an_even_potential_forbids_are_no_unknowns():
-    equation, _, _ = made("even")
-    waves = equation.harmonics @ np.array(SEEDS) % 7
-    assert not equation.mask[waves == 0].any()
-    assert not equation.mask[equation.harmonics.sum(axis=1) % 2 == 0].any()
-    assert made("both")[0].mask[waves != 0].all()

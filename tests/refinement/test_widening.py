@@ -1,23 +1,22 @@
 """Harmonics chosen by forces: lattices of choices with holes, the choice itself, and tori found with it against those of polytopes."""
 
 from dataclasses import replace
+from functools import partial
 from itertools import combinations, product
 
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import TorusTooLarge
+from symfpu import Chain, NoTorus, TorusTooLarge, refine, refine_at_amplitudes, torus_at_amplitudes
 from symfpu.refinement import search, widening
-from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated, has_holes, low_harmonics, neighbours, told_apart
+from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated, neighbours
 from symfpu.refinement.newton import newton
-from symfpu.refinement.refined_torus import COSINES, TOLERANCE, NoTorus, ended_early
-from symfpu.refinement.tori import refine, refine_at_amplitudes
-from symfpu.refinement.waves import WaveEquation
-from symfpu.refinement.widening import GROWTH, widened
-from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.refinement.refined_torus import TOLERANCE, ended_early
+from symfpu.refinement.widening import widened
 from tests.refinement.test_invariance import ball, equation_and_coefficients, largest
 from tests.refinement.test_ring_tori import of_series
+from tests.refinement.test_waves import plain_waves
 from tests.tolerances import ROUNDING, SAME_TORUS
 
 TORI = (
@@ -41,30 +40,11 @@ def with_holes(s=5, highest=8):
     return np.array(sorted(found))
 
 
-def folded_places(lattice, harmonics):
-    """One place for every pair +-nu."""
-    return lattice.entries(harmonics)
-
-
-def pairs(harmonics):
-    """How many different pairs +-nu."""
-    both = np.sort(np.stack([harmonics, -harmonics], axis=1).view([("", np.int64)] * harmonics.shape[1])[..., 0], axis=1)
-    return len(np.unique(both[:, 0]))
-
-
-def test_a_polytope_has_no_holes_and_a_star_has():
-    assert not has_holes(ball(2, 9))
-    assert not has_holes(ball(4, 8))
-    assert not has_holes(ball(5, 8))
-    assert has_holes(with_holes())
-    polytope = ball(4, 8)
-    assert np.array_equal(told_apart(polytope), dilated(polytope, 1.25))
-
-
 def test_a_lattice_tells_a_choice_with_holes_from_its_neighbours():
     chosen = with_holes()
     lattice, around = Lattice(chosen), neighbours(chosen)
-    assert len(np.unique(folded_places(lattice, around))) == pairs(around)
+    signed = {max(nu, tuple(-n for n in nu)) for nu in map(tuple, around.tolist())}
+    assert len(np.unique(lattice.entries(around))) == len(signed)
     hull = dilated(chosen, OVERSAMPLING / 2)
     assert lattice.points < len(hull) / 2  # as many points as the lattice of a filled hull has at least
 
@@ -77,29 +57,20 @@ def test_steps_of_odd_harmonics_stay_odd():
     assert set(map(tuple, moved.tolist())) <= set(map(tuple, around.tolist()))
 
 
-def test_low_harmonics_are_short():
-    assert np.abs(low_harmonics(4)).sum(axis=1).max() == 4
+LATTICES = {
+    "beta": lambda: equation_and_coefficients(Chain(6, beta="0.7"), (4, 5), low=1, radius=4),
+    "mixed": lambda: equation_and_coefficients(Chain(8, alpha="0.3", beta="0.2"), (1, 2, 7), low=1, radius=4),
+    "waves": lambda: plain_waves(9, (2, 3), 5),
+}
 
 
-@pytest.mark.parametrize(("chain", "seeds"), [(Chain(6, beta="0.7"), (4, 5)), (Chain(8, alpha="0.3", beta="0.2"), (1, 2, 7))], ids=repr)
-def test_a_force_is_the_same_on_another_lattice(chain, seeds):
-    equation, c = equation_and_coefficients(chain, seeds, low=1, radius=4)
-    wider = ball(len(seeds), 5)
-    own = [i for i, nu in enumerate(map(tuple, wider.tolist())) if nu in set(map(tuple, equation.harmonics.tolist()))]
+@pytest.mark.parametrize("name", LATTICES)
+def test_a_force_is_the_same_on_another_lattice(name):
+    equation, c = LATTICES[name]()
+    reach = np.abs(equation.harmonics).sum(axis=1).max()
+    wider = ball(equation.harmonics.shape[1], reach + 1)
+    own = np.abs(wider).sum(axis=1) <= reach
     there = np.zeros((len(wider), c.shape[1]))
-    there[own] = c
-    found, expected = equation.force_on(Lattice(wider), there)[own], equation.force(c)
-    assert largest(found - expected) <= ROUNDING * largest(expected)
-
-
-def test_a_force_of_waves_is_the_same_on_another_lattice():
-    chain, seeds = Chain(9, alpha="0.3", ends="periodic"), (2, 3)
-    equation = WaveEquation(chain, seeds, ball(2, 5))
-    low = np.abs(equation.harmonics).sum(axis=1) <= 1
-    c = np.where(low[:, None] & equation.mask, 0.1, 0.0)
-    wider = ball(2, 6)
-    own = np.abs(wider).sum(axis=1) <= 5
-    there = np.zeros((len(wider), 1))
     there[own] = c
     found, expected = equation.force_on(Lattice(wider), there)[own], equation.force(c)
     assert largest(found - expected) <= ROUNDING * largest(expected)
@@ -108,27 +79,12 @@ def test_a_force_of_waves_is_the_same_on_another_lattice():
 def solved(chain, amplitudes, radius):
     """Equation, cosines and shifts of a torus in a ball of harmonics."""
     torus = refine(torus_at_amplitudes(chain, amplitudes, order=4))
-    equation = COSINES.equation(chain, torus.seeds, ball(len(torus.seeds), radius), None)
+    equation = InvarianceEquation(chain, torus.seeds, ball(len(torus.seeds), radius))
     rows = dict(zip(map(tuple, torus.harmonics.tolist()), torus.cosines, strict=True))
     nothing = np.zeros(chain.N - 1)
     c = np.array([rows.get(nu, nothing) for nu in map(tuple, equation.harmonics.tolist())], dtype=np.longdouble)
-    shifts = np.array([float(w) - equation.linear[q - 1] for q, w in torus.omega.items()])
+    shifts = np.array([float(w) for w in torus.frequencies]) - equation.seed_frequencies
     return equation, c, shifts
-
-
-def test_the_choice_takes_the_largest_forces():
-    equation, c, shifts = solved(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.1"}, 4)
-    choice = widened(equation, c, shifts, 1e-30, 10_000)
-    assert len(choice.harmonics) == int(GROWTH * len(equation.harmonics))
-    assert not choice.full
-    wider = ball(2, 9)
-    there = np.zeros((len(wider), c.shape[1]))
-    own = {nu: i for i, nu in enumerate(map(tuple, wider.tolist()))}
-    there[[own[tuple(nu)] for nu in equation.harmonics.tolist()]] = c
-    forces = np.abs(equation.force_on(Lattice(wider), there)).max(axis=1)
-    chosen = set(map(tuple, choice.harmonics.tolist()))
-    order = np.argsort(-forces)[: len(equation.harmonics)]
-    assert set(map(tuple, wider[order].tolist())) <= chosen
 
 
 def test_the_choice_keeps_the_seeds_and_its_limit():
@@ -159,12 +115,18 @@ def small_polytopes(monkeypatch):
     monkeypatch.setattr(search, "FIRST_POLYTOPE", 30)
 
 
-@pytest.mark.parametrize(("chain", "amplitudes"), TORI, ids=repr)
-def test_tori_of_both_choices_are_the_same(chain, amplitudes, monkeypatch):
-    guess = torus_at_amplitudes(chain, amplitudes, order=4)
+QUICK = TORI[:2]
+MARKS = [[] if case in QUICK else [pytest.mark.long] for case in TORI]
+GUESSES = [pytest.param(partial(torus_at_amplitudes, *c, order=4), 60, id=repr(c), marks=m) for c, m in zip(TORI, MARKS, strict=True)]
+GUESSES += [pytest.param(partial(of_series, 12, {2: 0.001, 3: 0.002}, {"beta": "0.3"}), 20, id="waves")]
+
+
+@pytest.mark.parametrize(("make", "most"), GUESSES)
+def test_tori_of_both_choices_are_the_same(make, most, monkeypatch):
+    guess = make()
     by_polytope = refine(guess)
-    monkeypatch.setattr(search, "LARGEST_POLYTOPE", 60)
-    monkeypatch.setattr(search, "FIRST_POLYTOPE", 30)
+    monkeypatch.setattr(search, "LARGEST_POLYTOPE", most)
+    monkeypatch.setattr(search, "FIRST_POLYTOPE", most // 2)
     by_forces = refine(guess)
     assert not by_forces.warnings
     assert by_forces.residual() <= TOLERANCE
@@ -174,20 +136,13 @@ def test_tori_of_both_choices_are_the_same(chain, amplitudes, monkeypatch):
     assert abs(by_forces.energy() / by_polytope.energy() - 1) <= SAME_TORUS
 
 
-def test_waves_of_both_choices_are_the_same(monkeypatch):
-    guess = of_series(12, {2: 0.001, 3: 0.002}, {"beta": "0.3"})
-    by_polytope = refine(guess)
-    monkeypatch.setattr(search, "LARGEST_POLYTOPE", 20)
-    monkeypatch.setattr(search, "FIRST_POLYTOPE", 10)
-    by_forces = refine(guess)
-    assert not by_forces.warnings
-    for q, a in by_polytope.amplitudes.items():
-        assert abs(by_forces.amplitudes[q] / a - 1) <= SAME_TORUS
+@pytest.fixture
+def guess():
+    return torus_at_amplitudes(*TORI[0], order=4)
 
 
 @pytest.mark.usefixtures("small_polytopes")
-def test_as_many_as_allowed_leave_a_doubt():
-    guess = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.1"}, order=4)
+def test_as_many_as_allowed_leave_a_doubt(guess):
     torus = refine_at_amplitudes(guess, guess.amplitudes, most_harmonics=70)
     assert torus.verdict == "doubtful"
     assert len(torus.harmonics) == 70
@@ -196,8 +151,7 @@ def test_as_many_as_allowed_leave_a_doubt():
 
 
 @pytest.mark.usefixtures("small_polytopes")
-def test_a_failure_with_more_harmonics_gives_the_best_torus_with_a_doubt(monkeypatch):
-    guess = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.1"}, order=4)
+def test_a_failure_with_more_harmonics_gives_the_best_torus_with_a_doubt(guess, monkeypatch):
     calls = []
 
     def fails_with_many(equation, *rest, **how):
@@ -213,8 +167,7 @@ def test_a_failure_with_more_harmonics_gives_the_best_torus_with_a_doubt(monkeyp
 
 
 @pytest.mark.usefixtures("small_polytopes")
-def test_what_does_not_fit_into_memory_leaves_the_best_torus_with_a_doubt(monkeypatch):
-    guess = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.1"}, order=4)
+def test_what_does_not_fit_into_memory_leaves_the_best_torus_with_a_doubt(guess, monkeypatch):
 
     def small(sizes, chain):
         if sizes.harmonics > 100:
@@ -228,7 +181,6 @@ def test_what_does_not_fit_into_memory_leaves_the_best_torus_with_a_doubt(monkey
 
 
 @pytest.mark.usefixtures("small_polytopes")
-def test_a_failure_with_the_first_ones_is_no_torus():
-    guess = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.1"}, order=4)
+def test_a_failure_with_the_first_ones_is_no_torus(guess):
     with pytest.raises(NoTorus, match="goes from"):
         refine_at_amplitudes(guess, {1: "6", 2: "5"})

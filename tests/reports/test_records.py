@@ -1,113 +1,34 @@
-"""Every public result has a record: JSON that strict readers take, the chain and seeds as everywhere, numbers in one form."""
+"""Results as records and tables, one family of names for all; how the package is cited."""
 
-import json
 import re
+import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import mpmath
 import pytest
 
 import symfpu
-from symfpu.errors import InputError
-from symfpu.proofs.sweeps import SweepCase
+from symfpu import Chain, InputError, cite, family
+from symfpu.reports.family import SHOWN_MEMBERS, family_text
 from symfpu.reports.records import record
-from tests.test_pickle import RESULTS, public_classes
+from symfpu.reports.tables import markdown_table
+from tests.results import public_classes, result
 from tests.tolerances import THIRTY_DIGITS
 
-WITHOUT = {"Chain": "an argument", "Evaluator": "a program", "ExpandableTerm": "an expression", "NamedParts": "an expression"}
-WITHOUT |= dict.fromkeys(("AtlasBorder", "NormalFrequencies", "NormalMode", "ParametricResonance", "SpectralLine"), "a row of a table")
-CASES = {name: make for name, (make, _) in RESULTS.items() if hasattr(getattr(symfpu, name.partition(",")[0], object), "record")}
-CASES = {name: make for name, make in CASES.items() if name != "Bundle"}  # that of what it holds: below
-QUICK = {"QTorus", "Event", "Sweep", "ProfileLine", "ProfileDistance", "PropagationProof", "RuleForAllN", "Recurrence", "LeadingTerm"}
-QUICK |= {"Atlas", "BorderLaw"}
-FORMS = {
-    "frequencies": str,
-    "amplitudes": str,
-    "energy": str,
-    "harmonic_energy": str,
-    "average_harmonic_energy": str,
-    "residual": float,
-    "verdict": str,
-    "digits": (int, type(None)),
-}
-PAGE = (Path(__file__).parents[2] / "docs" / "records.md").read_text()
-
-
-def strict(found):
-    """As a strict reader gets it: no NaN, no Infinity."""
-    return json.loads(json.dumps(found, allow_nan=False))
-
-
-def numbers(value):
-    """All numbers of a record that are no whole ones."""
-    if isinstance(value, dict):
-        return [x for item in value.values() for x in numbers(item)]
-    if isinstance(value, list):
-        return [x for item in value for x in numbers(item)]
-    return [value] if isinstance(value, float) else []
-
-
-def test_every_public_result_has_a_record_or_a_reason():
-    with_record = {name for name in public_classes() if hasattr(getattr(symfpu, name), "record")}
-    assert public_classes() - with_record == set(WITHOUT)
-
-
-EVERY = [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in CASES]
-
-
-@pytest.mark.parametrize("name", EVERY)
-def test_records_are_json_with_the_same_keys_and_forms(name, tmp_path):
-    result = CASES[name](tmp_path)
-    found = result.record()
-    assert strict(found) == found
-    assert (found["kind"], found["symfpu_version"]) == (type(result).__name__, symfpu.__version__)
-    for value in numbers(found):
-        assert float(f"{value:.15g}") == value
-    if hasattr(result, "chain"):
-        assert {key: found[key] for key in result.chain.typed} == result.chain.typed
-    if isinstance(getattr(result, "seeds", None), tuple) and hasattr(result, "chain"):
-        assert found["seeds"] == list(result.seeds)
-    for key, form in FORMS.items():
-        values = found.get(key)
-        inside = values.values() if isinstance(values, dict) else [values] * (values is not None)
-        assert all(isinstance(value, form) for value in inside), key
-    if hasattr(type(result), "verdict"):
-        assert found["verdict"] == result.verdict
-
-
-@pytest.mark.parametrize("name", EVERY)
-def test_keys_are_on_the_page(name, tmp_path):
-    words = set(re.findall(r"`(\w+)`", PAGE))
-    assert {key for key in CASES[name](tmp_path).record() if key not in words} - AS_COLUMNS == set()
-
-
-AS_COLUMNS = {"N", "alpha", "beta", "potential"}
-
 
 @pytest.mark.long
-def test_a_file_has_the_record_of_what_it_holds(tmp_path):
-    make, _ = RESULTS["Bundle"]
-    bundle = make(tmp_path)
-    found = bundle.record()
-    assert strict(found) == found
-    inside = bundle.torus.record()
-    assert inside["kind"] == "QTorus"
-    assert {key: found[key] for key in inside if key != "assessment"} == inside
-    assert {"provenance", "assessment", "test_vectors"} <= set(found)
-
-
-@pytest.mark.long
-def test_digits_are_not_lost(tmp_path):
+def test_digits_are_not_lost():
     """Sums of numbers of many digits are taken with these digits."""
-    torus = RESULTS["QTorus, digits"][0](tmp_path)
+    torus = result("QTorus, digits")
     found = torus.record()
     with mpmath.workdps(40):
         total = torus.harmonic_energies().sum()
         assert abs(mpmath.mpf(found["harmonic_energy"]) / total - 1) < THIRTY_DIGITS
 
 
-def test_frequencies_are_by_seed_as_amplitudes_are(tmp_path):
-    torus = RESULTS["QTorus"][0](tmp_path)
+def test_frequencies_are_by_seed_as_amplitudes_are():
+    torus = result("QTorus")
     assert list(torus.omega) == list(torus.amplitudes) == [1, 2]
     assert tuple(torus.omega.values()) == torus.frequencies == tuple(torus.series.omega.values())
     again = symfpu.lindstedt(torus.series.chain, (2, 1), torus.omega, 2)
@@ -118,8 +39,9 @@ def test_frequencies_are_by_seed_as_amplitudes_are(tmp_path):
 
 def test_a_sweep_of_another_potential_names_it():
     """Its exceptions are as those of a proof."""
-    case = SweepCase(4, (1, 2), "refuted", ((3, 1, None),), True)
-    found = symfpu.Sweep("toda:1/2", 1, (case,)).record()
+    case = next(case for case in result("Sweep").cases if case.seeds == (1, 2))
+    refuted = replace(case, verdict="refuted", exceptions=((3, 1, None),))
+    found = symfpu.Sweep("toda:1/2", 1, (refuted,)).record()
     assert (found["potential"], found["cases"], "model" in found) == ("toda:1/2", 1, False)
     assert found["exceptions"][0]["exceptions"] == [{"mode": 3, "predicted": 1, "actual": None}]
 
@@ -140,3 +62,59 @@ def attributes_of(kind):
 def test_what_is_no_result_is_refused():
     with pytest.raises(InputError, match="a result with a record"):
         record("torus")
+
+
+def test_a_file_has_the_record_of_what_it_holds():
+    bundle = result("Bundle")
+    found, inside = bundle.record(), bundle.torus.record()
+    assert inside["kind"] == "QTorus"
+    assert {key: found[key] for key in inside if key != "assessment"} == inside
+    assert {"provenance", "assessment", "test_vectors"} <= set(found)
+
+
+def test_markdown_table():
+    assert markdown_table(["a", "b"], [["1", "2"]]) == "| a | b |\n| --- | --- |\n| 1 | 2 |"
+
+
+@pytest.fixture(scope="module")
+def found():
+    return family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005")
+
+
+@pytest.mark.parametrize("times", [1, 2, 3, 5])
+def test_a_text_that_leaves_members_out_says_so(found, times):
+    long = replace(found, members=found.members * times)
+    lines = list(family_text(long))
+    shown = [line for line in lines if line.startswith("  Member(")]
+    assert shown[0].strip() == repr(long.members[0])
+    assert shown[-1].strip() == repr(long.members[-1])
+    assert len(shown) == min(len(long.members), SHOWN_MEMBERS + 1)
+    said = [line for line in lines if "members shown" in line]
+    assert (said == []) == (len(shown) == len(long.members))
+    assert all(f"{len(shown)} of {len(long.members)} members shown" in line for line in said)
+
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_file_is_what_the_package_says():
+    assert (ROOT / "CITATION.cff").read_text() == cite("cff") + "\n", "make citation"
+
+
+def test_the_version_is_that_of_the_project():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert project["version"] == symfpu.__version__
+    for form in ("text", "bibtex", "cff"):
+        assert symfpu.__version__ in cite(form)
+
+
+def test_bibtex_has_closed_entries_with_their_fields():
+    entries = cite("bibtex").split("\n\n")
+    assert [re.match(r"@(\w+)\{(\w+),", entry).groups() for entry in entries] == [("misc", "symfpu"), ("article", "qtori2013")]
+    assert all(entry.count("{") == entry.count("}") for entry in entries)
+    assert "author = {Christodoulidi, H. and Efthymiopoulos, C.}" in entries[1]
+
+
+def test_another_form_is_refused():
+    with pytest.raises(InputError, match="text, bibtex, cff"):
+        cite("ris")

@@ -1,4 +1,4 @@
-"""Every public result comes back from its file as it was; what is damaged, forged or foreign is refused."""
+"""Files of results: what is damaged, forged or foreign is refused. That every result comes back: tests/test_results.py."""
 
 import json
 import tomllib
@@ -9,49 +9,13 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu.breathers.balance import breather_at_amplitude
-from symfpu.bundles.tree import OWN_FORMAT
-from symfpu.certified.existence import prove_existence
-from symfpu.chain.chain import Chain
-from symfpu.cli.main import main
-from symfpu.dynamics.orbits import integrate
-from symfpu.errors import InputError
-from symfpu.files.archive import BundleError, digest_of, write_archive
-from symfpu.proofs.sweeps import Sweep, SweepCase
+from symfpu import BundleError, Chain, InputError, breather_at_amplitude, integrate, load, prove_existence, save
+from symfpu.files.archive import digest_of, write_archive
 from symfpu.saved.classes import CLASSES, PARTS, RESULTS
-from symfpu.saved.results import load, save
 from tests.bundles.test_bundle import same
-from tests.test_pickle import RESULTS as CASES
-from tests.test_pickle import public_classes
+from tests.results import public_classes, result
 
 ROOT = Path(symfpu.__file__).parent.parent
-WITHOUT = {
-    "AtlasBorder": "made of the rows of Atlas",
-    "Bundle": "what a file held",
-    "Chain": "an argument",
-    "Evaluator": "a program",
-    "ExistenceProof": "its certificate is its file",
-    "ExpandableTerm": "an expression",
-    "NamedParts": "an expression",
-    "BirkhoffForm": "exact numbers of a field, made anew",
-    "NormalFrequencies": "part of Member",
-    "NormalFrequencySeries": "a series, made anew",
-    "NormalMode": "part of NormalModes",
-    "ParametricResonance": "part of NormalModes",
-    "StabilityProof": "its certificate is its file",
-    "ResidualProof": "its certificate is its file",
-    "StayProof": "its certificate is its file",
-    "SpectralLine": "part of FrequencyAnalysis",
-    "TwistAtRest": "exact numbers of a field, made anew",
-}
-QUICK = {"QTorus", "Event", "Sweep", "ProfileLine", "ProfileDistance", "PropagationProof", "RuleForAllN", "Recurrence", "ShotOrbit"}
-QUICK |= {"Atlas", "BorderLaw"}
-SAVED = [name for name in CASES if name.partition(",")[0] in public_classes() - set(WITHOUT)]
-
-
-def test_every_public_result_is_saved_or_has_a_reason():
-    kept = (*(CLASSES[name] for name in RESULTS), *OWN_FORMAT)
-    assert {name for name in public_classes() if not issubclass(getattr(symfpu, name), kept)} == set(WITHOUT)
 
 
 def test_the_list_has_no_class_that_is_not_needed():
@@ -71,26 +35,6 @@ def test_the_modules_of_the_classes_are_of_floors_below():
     own = next(number for number, rooms in enumerate(floors) if "saved" in rooms)
     below = {room for rooms in floors[own + 1 :] for room in rooms}
     assert {module.split(".")[1] for module in (*RESULTS.values(), *PARTS.values())} <= below
-
-
-@pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in SAVED])
-def test_results_come_back_as_they_were(name, tmp_path, capsys):
-    make, answers = CASES[name]
-    result = make(tmp_path)
-    file = save(tmp_path / "result.symfpu", result, verdict={"verdict": "good"}, command="a command")
-    found = load(file)
-    assert type(found.result) is type(result)
-    assert same(found.result, result)
-    assert repr(found.result) == repr(result)
-    assert same(answers(found.result), answers(result))
-    assert (found.verdict, found.provenance["command"]) == ({"verdict": "good"}, "a command")
-    assert main(["show", str(file)]) == 0
-    assert "created" in capsys.readouterr().out
-    assert main(["show", str(file), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["kind"] == type(result).__name__
-
-
-SWEEP = Sweep("beta", 1, (SweepCase(4, (1, 2), "refuted", ((3, 1, None),), True),))
 
 
 @pytest.fixture(scope="module")
@@ -177,43 +121,11 @@ def test_a_newer_file_is_named(file):
         load(forged(file, lambda body: body.update(schema=99)))
 
 
-def test_every_flipped_byte_is_seen(orbit, file):
-    """Or changes nothing: the date of a member, say."""
-    raw = file.read_bytes()
-    for place in range(0, len(raw), 97):
-        file.write_bytes(raw[:place] + bytes([raw[place] ^ 0x55]) + raw[place + 1 :])
-        try:
-            assert same(load(file).result, orbit)
-        except BundleError:
-            continue
-
-
-def test_a_cut_file_is_refused(file):
-    raw = file.read_bytes()
-    for length in (0, 3, 4, 100, len(raw) // 2, len(raw) - 1):
-        file.write_bytes(raw[:length])
-        with pytest.raises(BundleError):
-            load(file)
-
-
-@pytest.mark.parametrize("thing", [1, "torus", None, Chain(4, alpha=1), [SWEEP], SWEEP.cases[0]])
+@pytest.mark.parametrize("thing", [1, "torus", None, Chain(4, alpha=1), [result("Sweep")], result("Sweep").cases[0]])
 def test_what_is_no_result_is_refused(thing, tmp_path):
     with pytest.raises(InputError, match="a series, a solution or another result"):
         save(tmp_path / "file", thing)
     assert not (tmp_path / "file").exists()
-
-
-@pytest.mark.parametrize("notes", [{"verdict": 3}, {"command": 3}, {"created": "today"}])
-def test_notes_are_checked(notes, tmp_path):
-    with pytest.raises(InputError, match=next(iter(notes))):
-        save(tmp_path / "file", SWEEP, **notes)
-    with pytest.raises(InputError, match="path"):
-        save(3, SWEEP)
-
-
-def test_other_verbs_name_what_they_need(file, capsys):
-    assert main(["refine", str(file)]) == 2
-    assert "a file with a torus or a breather in it" in capsys.readouterr().err
 
 
 def test_a_proof_with_a_certificate_says_how_it_is_kept(tmp_path):

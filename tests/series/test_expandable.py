@@ -1,7 +1,6 @@
 """Terms whose symbols open: the page is well formed, and every symbol on it is explained."""
 
 import re
-from html.parser import HTMLParser
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -29,21 +28,6 @@ def text(element):
     return "".join(element.itertext())
 
 
-class Balance(HTMLParser):
-    """Elements that are open, as a browser reads them."""
-
-    def __init__(self):
-        super().__init__()
-        self.open, self.seen = [], set()
-
-    def handle_starttag(self, tag, attrs):
-        self.open.append(tag)
-        self.seen.add(tag)
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-
 def series(order=4, seeds=(1,), N="N"):
     return lindstedt(Chain(N, alpha=1), seeds, order=order)
 
@@ -60,13 +44,7 @@ TERMS = {
 
 @pytest.mark.parametrize("name", TERMS)
 def test_page_is_well_formed_and_has_no_scripts(name):
-    page = TERMS[name]()._repr_html_()
-    tree(page)
-    parser = Balance()
-    parser.feed(page)
-    parser.close()
-    assert parser.open == []
-    assert parser.seen <= ELEMENTS
+    assert {element.tag for element in tree(TERMS[name]()._repr_html_()).iter()} <= {"body"} | ELEMENTS
 
 
 @pytest.mark.parametrize("name", TERMS)

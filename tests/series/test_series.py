@@ -1,13 +1,10 @@
 """Access to a series: arrays, expressions, sums and its repr."""
 
-import mpmath
 import numpy as np
 import pytest
 import symengine as se
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.series.lindstedt import lindstedt
+from symfpu import Chain, InputError, lindstedt
 from tests.tolerances import CENTRAL_DIFFERENCE, COEFFICIENT, DIFFERENCE_ROUNDING, ROUNDING
 
 AMPLITUDES = {1: 0.31, 2: 0.17}
@@ -78,16 +75,6 @@ def test_frequency_derivatives_are_differences(series):
         assert np.allclose(jacobian[:, :, j], difference, rtol=CENTRAL_DIFFERENCE, atol=DIFFERENCE_ROUNDING)  # step^2 and EPS / step
 
 
-def test_the_lowest_correction_of_a_beta_breather_is_the_textbook_one():
-    """omega^(1) = (3/8) Omega^3 C_qqqq A^2 / 1: from x'' + Omega^2 x = -mu Omega^4 C x^3; C_qqqq = 3 below 2q = N."""
-    chain, q = Chain(16, beta="0.3"), 3
-    series = lindstedt(chain, (q,), ("0.59",), 1)
-    Omega = mpmath.mpf(2) * mpmath.sin(mpmath.mpf(q) * mpmath.pi / 32)
-    exponents, values = series.frequency_coefficients(q, 1)
-    assert exponents.tolist() == [[2]]
-    assert values[0] == pytest.approx(float(mpmath.mpf(3) / 8 * Omega**3 * chain.C(q, q, q, q)), rel=ROUNDING)
-
-
 @pytest.mark.parametrize("with_mu", [False, True])
 def test_absolute_sums_are_sums_of_moduli(series, with_mu):
     """S_1 over all coefficients h, S_2 over harmonics (Eqs. serabs2, serabs3)."""
@@ -106,28 +93,6 @@ def test_absolute_sums_are_sums_of_moduli(series, with_mu):
         unit = abs(series.chain.mu) ** k if with_mu else 1.0
         assert first[k] == pytest.approx(unit * total, rel=COEFFICIENT)
         assert second[k] == pytest.approx(unit * sum(map(abs, by_harmonic.values())), rel=COEFFICIENT, abs=COEFFICIENT * unit * total)
-
-
-def test_degrees():
-    assert [lindstedt(Chain(8, alpha=1), (1,), order=2).degree(k) for k in range(3)] == [1, 2, 3]
-    assert [lindstedt(Chain(8, beta=1), (1,), order=2).degree(k) for k in range(3)] == [1, 3, 5]
-
-
-def test_expressions_print_as_latex():
-    from sympy import latex, sympify
-
-    series = lindstedt(Chain(8, alpha="0.25"), (1,), order=2)
-    text = latex(sympify(series.term(2, 1)))
-    assert r"\cos" in text
-    assert r"\theta_{1}" in text
-    assert "A_{1}^{2}" in text
-
-
-def test_repr_is_an_answer(series):
-    text = repr(series)
-    assert text.startswith("LindstedtSeries(N=8, alpha=-0.3, beta=0.2, seeds=1,2, order 5, ")
-    assert "smallest divisor" in text
-    assert f"{sum(table.size for table in series.coordinates):,} coefficients" in text
 
 
 @pytest.mark.parametrize(

@@ -9,17 +9,12 @@ import symengine as se
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from symfpu import Chain, InputError, ResonantDivisor, lindstedt, load, sample_series, save
 from symfpu.algebra.formulas import NodeTable
-from symfpu.bundles.bundle import load, save
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError, ResonantDivisor, VanishingResidue
+from symfpu.errors import VanishingResidue
 from symfpu.proofs.certificates import random_point
 from symfpu.series.coefficients import ResiduePoint
-from symfpu.series.lindstedt import lindstedt
 from symfpu.series.residues import residue_series
-from symfpu.series.sample import sample_series
-from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.quasiperiodic import FourierTorus
 from tests.oracles.cases import DEEP, SHALLOW
 from tests.tolerances import COEFFICIENT, DIFFERENCE_OF_DOUBLES, ROUNDING
 
@@ -47,17 +42,6 @@ def test_doubles_are_those_of_the_ring_of_doubles(case):
     require_equal(ours, theirs)
     assert ours.smallest_divisors == theirs.smallest_divisors
     assert ours.ring == "float64"
-
-
-@pytest.mark.parametrize("case", CASES, ids=lambda c: c.name)
-def test_residues_are_those_of_the_ring_of_residues(case):
-    series = universal(case)
-    chain = series.chain
-    point = random_point(chain.N, len(case.seeds), series.grading.degree, random.Random(11))
-    ours, theirs = series.at((), point=point), residue_series(chain, series.seeds, point, case.order)
-    for mine, other in zip((*ours.coordinates, *ours.corrections), (*theirs.coordinates, *theirs.corrections), strict=True):
-        assert (mine == other).all()
-    assert ours.point == point
 
 
 @pytest.mark.long
@@ -115,13 +99,6 @@ def test_other_couplings_of_the_same_model():
     assert ours.chain == Chain(7, alpha="0.5", beta="-0.25")
     with pytest.raises(InputError, match="couplings of the same model, alpha"):
         lindstedt(ALPHA, (1,), order=2).at(("0.39",), beta=1)
-
-
-def test_a_series_of_the_program_is_a_series():
-    """It is solved, and gives the torus of the series in doubles."""
-    ours = lindstedt(ALPHA, (1,), order=6).at(("0.3905",))
-    theirs = lindstedt(ALPHA, (1,), ("0.3905",), 6)
-    assert solve_amplitudes(ours).amplitudes[1] == pytest.approx(solve_amplitudes(theirs).amplitudes[1], rel=COEFFICIENT)
 
 
 def test_frequencies_that_make_a_multiplier_infinite_are_named():
@@ -211,39 +188,6 @@ def test_frequencies_of_a_sample_are_those_of_the_series(chain, seeds, omega, or
         sampled.frequencies_at([0.1] * 3)
     with pytest.raises(InputError, match="only seeds have chosen frequencies"):
         sampled.derivatives_by_frequency(max(seeds) + 1)
-
-
-@pytest.mark.parametrize(("chain", "seeds", "omega", "order"), SAMPLES, ids=str)
-def test_energies_of_a_sample_are_those_of_the_torus(chain, seeds, omega, order):
-    """Averages of the torus with the same amplitudes and frequencies, and limits of differences."""
-    series, step = lindstedt(chain, seeds, order=order), 1e-6
-    amplitudes = 0.2 + 0.1 * np.arange(len(seeds))
-    found = sample_series(series, [omega]).energies_at(amplitudes)
-    numeric = lindstedt(chain, seeds, [Fraction(float(w)) for w in omega], order)
-    rows = {}
-    for k in range(order + 1):
-        for nu, values in zip(*numeric.harmonic_terms(amplitudes, k), strict=True):
-            rows[tuple(nu.tolist())] = rows.get(tuple(nu.tolist()), 0) + values
-    torus = FourierTorus(chain, seeds, tuple(omega), np.array(list(rows)), np.array(list(rows.values())), dict.fromkeys(seeds, 0.0))
-    expected = torus.average_spectrum()
-    assert np.abs(found.energies[0] - expected).max() <= COEFFICIENT * expected.max()
-    for j in range(len(seeds)):
-        unit = step * np.eye(len(seeds))[j]
-        more, less = (sample_series(series, [omega + sign * unit]).energies_at(amplitudes).energies for sign in (1, -1))
-        assert np.abs(found.by_frequencies[0, :, j] - (more - less)[0] / (2 * step)).max() <= DIFFERENCE_OF_DOUBLES
-        more, less = (sample_series(series, [omega]).energies_at(amplitudes + sign * unit).energies for sign in (1, -1))
-        assert np.abs(found.by_amplitudes[0, :, j] - (more - less)[0] / (2 * step)).max() <= DIFFERENCE_OF_DOUBLES
-
-
-def test_the_coupling_is_a_variable():
-    series = lindstedt(Chain(6, alpha="0.5", beta="0.1"), (1,), order=4)
-    values, step = 0.3, 1e-6
-    around = sample_series(series, [[0.52]] * 2, [values + step, values - step])
-    tables, corrections = sample_series(series, [[0.52]], values).derivatives_by_coupling()
-    for exact, table in zip((*tables, *corrections), (*around.coordinates, *around.corrections), strict=True):
-        difference = (table[..., 0] - table[..., 1]) / (2 * step)
-        assert np.abs(exact[..., 0] - difference).max(initial=0) <= DIFFERENCE_OF_DOUBLES * max(1, np.abs(difference).max(initial=0))
-    assert any(table.any() for table in tables)
 
 
 @pytest.mark.long

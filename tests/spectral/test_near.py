@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from symfpu import Chain, frequency_analysis, integrate, lindstedt, refine, solve_amplitudes, torus_near
-from symfpu.errors import InputError
+from symfpu import Chain, InputError, frequency_analysis, integrate, lindstedt, refine, solve_amplitudes, torus_near
 from tests.tolerances import AMPLITUDE_FROM_LINES
 
 
@@ -25,8 +24,8 @@ def test_newton_finds_the_torus_that_the_orbit_is_on(found):
     for q in (1, 2):
         assert abs(again.amplitudes[q]) == pytest.approx(abs(torus.amplitudes[q]), abs=AMPLITUDE_FROM_LINES)
     assert float(again.energy()) == pytest.approx(float(torus.energy()), abs=AMPLITUDE_FROM_LINES)
-    start = torus.positions(3.0)
-    assert again.positions(0.0) == pytest.approx(start, abs=AMPLITUDE_FROM_LINES)
+    start = torus.Q(3.0)
+    assert again.Q(0.0) == pytest.approx(start, abs=AMPLITUDE_FROM_LINES)
 
 
 def test_fewer_seeds_leave_the_other_lines_out(found):

@@ -7,7 +7,7 @@ import sys
 import time
 from pathlib import Path
 
-from symfpu.errors import InputError
+from symfpu import InputError
 
 
 def square(n, *, shift=0):
@@ -70,7 +70,7 @@ def strange(n):
 
 
 if __name__ == "__main__":  # the driver of the kill tests: FILE CASES SECONDS
-    from symfpu.sweeps.sweep import sweep
+    from symfpu import sweep
     from tests.sweeps import functions
 
     cases = [{"n": n} for n in range(int(sys.argv[2]))]

@@ -1,6 +1,7 @@
 """Sweeps: every case a row, whatever becomes of it; gone on with from its file and from no other."""
 
 import json
+import os
 import resource
 import threading
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -9,13 +10,9 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.chain.propagation import excitation_sequence
-from symfpu.errors import InputError
-from symfpu.files.kept_lines import FileFull
-from symfpu.proofs.certificates import prove_propagation
+from symfpu import Chain, FileFull, InputError, SweepStopped, excitation_sequence, prove_propagation, read_sweep, sweep
+from symfpu.files.kept_lines import entry_of, line_of
 from symfpu.sweeps.rows_file import RowsFile, head_of
-from symfpu.sweeps.sweep import SweepStopped, read_sweep, sweep
 from symfpu.sweeps.this_process import ThisProcess
 from tests.sweeps.functions import coupling_of, deadly_square, lists, rows_so_far, slow_square, square, strange
 
@@ -29,7 +26,12 @@ def threads():
 
 
 def lines_of(file):
-    return [json.loads(line) for line in file.read_text().splitlines()]
+    """The entries, each of which agrees with its checksum."""
+    return list(map(entry_of, file.read_bytes().splitlines()))
+
+
+def write_lines(file, *entries):
+    file.write_bytes(b"".join(map(line_of, entries)))
 
 
 def test_rows_are_in_the_order_of_the_cases(threads):
@@ -45,7 +47,7 @@ def test_the_head_says_what_the_rows_are_of(tmp_path, threads):
     sweep(coupling_of, [{"mode": 2}], fixed={"chain": chain}, executor=threads, file=file)
     head, row = lines_of(file)
     assert head["format"] == "symfpu sweep"
-    assert head["schema"] == 1
+    assert head["schema"] == 2
     assert head["symfpu_version"] == "0.1.0"
     assert head["function"] == "tests.sweeps.functions.coupling_of"
     assert head["fixed"] == {"chain": {"N": 8, "alpha": "0", "beta": "0.1"}}
@@ -141,7 +143,7 @@ def test_failures_are_computed_again_when_asked(tmp_path, threads):
     head = head_of("tests.sweeps.functions.square", {})
     spoilt = {"case": {"n": 2}, "failure": {"kind": "MemoryError", "message": "", "numbers": {}}}
     good = {"case": {"n": 3}, "result": "kept"}
-    file.write_text("".join(json.dumps(entry) + "\n" for entry in (head, spoilt, good)))
+    write_lines(file, head, spoilt, good)
     assert sweep(square, TEN[2:4], executor=threads, file=file).rows[0].failure.kind == "MemoryError"
     again = sweep(square, TEN[2:4], executor=threads, file=file, retry=True)
     assert [row.result for row in again.rows] == [{"square": 4, "root": 2**0.5}, "kept"]
@@ -167,7 +169,7 @@ def test_a_file_of_another_sweep_is_refused(tmp_path, threads, function, fixed, 
 @pytest.mark.parametrize("version", ["0.0.9", "0.2.0"])
 def test_a_file_of_another_version_is_refused(tmp_path, threads, version):
     file = tmp_path / "rows.jsonl"
-    file.write_text(json.dumps(head_of("tests.sweeps.functions.square", {}) | {"symfpu_version": version}) + "\n")
+    write_lines(file, head_of("tests.sweeps.functions.square", {}) | {"symfpu_version": version})
     with pytest.raises(InputError, match=f"symfpu_version '{version}' and not"):
         sweep(square, TEN[:1], executor=threads, file=file)
 
@@ -183,14 +185,36 @@ def test_a_foreign_file_is_left_as_it_is(tmp_path, threads, text):
     assert file.read_text() == text
 
 
-@pytest.mark.parametrize(
-    "line", ["{}", "no json", '{"case": {"n": 0}, "failure": 3}', '{"case": {"n": 0}, "result": 1}\n{"case": {"n": 0}, "result": 1}']
-)
-def test_a_damaged_file_is_refused(tmp_path, threads, line):
+DAMAGE, HEAD = "it is damaged: remove it", head_of("tests.sweeps.functions.square", {})
+NO_FILES = {
+    "a row without a case": ([HEAD, {"n": 0}], DAMAGE),
+    "a failure without a kind": ([HEAD, {"case": {"n": 0}, "failure": 3}], DAMAGE),
+    "a case twice": ([HEAD, *2 * [{"case": {"n": 0}, "result": 1}]], DAMAGE),
+    "a head without function": ([{key: HEAD[key] for key in HEAD if key != "function"}], f"{DAMAGE}|has function None and not"),
+    "a head without fixed": ([{key: HEAD[key] for key in HEAD if key != "fixed"}], f"{DAMAGE}|has fixed None and not"),
+    "a schema without checksums": ([HEAD | {"schema": 1}], "schema 1 and not 2"),
+}
+
+
+@pytest.mark.parametrize("case", NO_FILES)
+def test_files_that_no_sweep_writes_are_refused(tmp_path, threads, case):
+    file, (entries, reason) = tmp_path / "rows.jsonl", NO_FILES[case]
+    write_lines(file, *entries)
+    for call in (read_sweep, lambda path: sweep(square, TEN, executor=threads, file=path)):
+        with pytest.raises(InputError, match=reason):
+            call(file)
+
+
+def test_a_line_that_was_changed_is_named_and_can_be_removed(tmp_path, threads):
     file = tmp_path / "rows.jsonl"
-    file.write_text(json.dumps(head_of("tests.sweeps.functions.square", {})) + f"\n{line}\n")
-    with pytest.raises(InputError, match="damaged"):
-        sweep(square, TEN, executor=threads, file=file)
+    whole = sweep(square, TEN[:3], executor=threads, file=file)
+    head, first, second, third = file.read_bytes().splitlines(keepends=True)
+    file.write_bytes(head + first + second.replace(b'"square": ', b'"square": 7') + third)
+    for call in (read_sweep, lambda path: sweep(square, TEN[:3], executor=threads, file=path)):
+        with pytest.raises(InputError, match=r"line 3 was changed.* remove this line"):
+            call(file)
+    file.write_bytes(head + first + third)
+    assert sweep(square, TEN[:3], executor=threads, file=file) == whole
 
 
 def test_without_processes_a_row_is_kept_before_the_next_case_begins(tmp_path):
@@ -202,7 +226,7 @@ def test_without_processes_a_row_is_kept_before_the_next_case_begins(tmp_path):
 
 def test_one_process_at_a_time_writes(tmp_path, threads):
     file = tmp_path / "rows.jsonl"
-    with RowsFile(file, head_of("tests.sweeps.functions.square", {})), pytest.raises(InputError, match="no other process"):
+    with RowsFile(file, head_of("tests.sweeps.functions.square", {})), pytest.raises(InputError, match="no other run"):
         sweep(square, TEN, executor=threads, file=file)
     assert len(sweep(square, TEN, executor=threads, file=file).rows) == 10
 
@@ -297,3 +321,11 @@ def test_numbers_of_many_digits_are_text(threads):
     swept = sweep(square, [{"n": third}], executor=threads)
     assert mpmath.mpf(swept.rows[0].case["n"]) == pytest.approx(1 / 3)
     assert len(swept.rows[0].case["n"]) > 40
+
+
+def test_what_might_never_end_is_not_read_as_a_sweep(tmp_path, threads):
+    """A pipe that nobody writes: opening it would wait for ever."""
+    os.mkfifo(tmp_path / "pipe")
+    for call in (read_sweep, lambda path: sweep(pow, [{"base": 2, "exp": 3}], executor=threads, file=path)):
+        with pytest.raises(InputError, match="allowed is a regular file"):
+            call(tmp_path / "pipe")

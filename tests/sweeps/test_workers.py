@@ -13,9 +13,9 @@ from pathlib import Path
 import psutil
 import pytest
 
+from symfpu import sweep
 from symfpu.algebra.dense import available_cores, threads_of_a_computation
 from symfpu.sweeps.rows_file import read_rows
-from symfpu.sweeps.sweep import sweep
 from symfpu.sweeps.workers import ProcessWorkers, worker_processes
 from tests.sweeps.functions import deadly_square, slow_square, square, square_in_little_memory, told_square
 
@@ -61,9 +61,7 @@ def test_tasks_at_work_are_ended_where_they_are_cancelled():
     working, waiting = pool.submit(time.sleep, 60), pool.submit(os.getpid)
     while not working.running():
         time.sleep(0.01)
-    start = time.monotonic()
     pool.shutdown(cancel_futures=True)
-    assert time.monotonic() - start < 20
     assert working.exception().exit_code == -signal.SIGKILL
     assert isinstance(waiting_error(waiting), CancelledError)
     assert not psutil.pid_exists(pid)
@@ -105,11 +103,9 @@ def test_an_error_in_a_with_ends_what_is_at_work():
                 time.sleep(0.01)
             raise KeyboardInterrupt
 
-    start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         interrupted()
     (working,) = futures
-    assert time.monotonic() - start < 20
     assert working.exception().exit_code == -signal.SIGKILL
 
 
@@ -211,6 +207,7 @@ def no_orphans(pids):
     return not any(psutil.pid_exists(pid) for pid in pids)
 
 
+@pytest.mark.long
 def test_kills_at_random_lose_no_row_and_double_none(tmp_path):
     file = tmp_path / "rows.jsonl"
     deaths, seen = kill_at_random(file, 60, 0.05, 0.4, 3, 0.5)

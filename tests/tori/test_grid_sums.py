@@ -5,26 +5,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
+from symfpu import Chain, FourierTorus
 from symfpu.tori import quasiperiodic
-from symfpu.tori.grid_sums import grid_sums
-from symfpu.tori.quasiperiodic import FourierTorus
 from tests.tolerances import THOUSAND_ROUNDINGS
 
 CHAIN = Chain(8, alpha="0.3")
-
-
-@pytest.mark.parametrize(("seeds", "number"), [(1, 7), (2, 5), (3, 4), (2, 2)])
-def test_all_points_at_once_are_the_sums_of_cosines(seeds, number):
-    draws = np.random.default_rng(seeds)
-    harmonics = draws.integers(-9, 10, size=(40, seeds))
-    coefficients = draws.normal(size=(40, 3))
-    points = np.array(list(np.ndindex(*(number,) * seeds)))
-    theta = 2 * np.pi * (3 * points + 1) / (3 * number)
-    by_hand = np.cos(theta @ harmonics.T) @ coefficients
-    found = grid_sums(harmonics, coefficients, number)
-    assert found.shape == by_hand.shape
-    assert np.abs(found - by_hand).max() <= THOUSAND_ROUNDINGS * np.abs(coefficients).sum()
 
 
 @pytest.mark.parametrize("points", [1, 3, 6])

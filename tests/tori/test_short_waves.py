@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import ResonantDivisor
+from symfpu import Chain, ResonantDivisor
 from symfpu.tori.short_waves import shifts_by_squares, short_waves
 from tests.action_angle.test_at_rest import published_hessian
 from tests.tolerances import SLOPE, TODA_LINEAR

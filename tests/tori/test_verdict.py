@@ -1,7 +1,6 @@
 """The verdict: its word for cases that are known, and each piece of its evidence against another way to compute it."""
 
 import itertools
-import json
 import math
 from dataclasses import replace
 from functools import cache
@@ -11,24 +10,12 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
+from symfpu import Chain, InputError, assess, lindstedt, solve_amplitudes
 from symfpu.paper.printed import APPENDIX_F, FIG9_BREATHER, TWO_TORUS
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.verdict import RATIO_ORDERS, LargestTerm, assess, growth_of, root_uncertainty_of, short
-from tests.tolerances import (
-    DIFFERENCE_OF_DOUBLES,
-    DOUBLE_RESIDUAL,
-    GROWTH_OF_TERMS,
-    LAST_DIGIT,
-    LONG_SERIES_RESIDUAL,
-    RESIDUAL_ROUNDING,
-    ROUNDING,
-    SAME_AS_DOUBLES,
-    SEQUENCE_LIMIT,
-    SUMMED_FIG1,
-)
+from symfpu.tori.best_order import best_order
+from symfpu.tori.verdict import RATIO_ORDERS, LargestTerm, growth_of, root_uncertainty_of
+from tests import tolerances
+from tests.tolerances import DIFFERENCE_OF_DOUBLES, LAST_DIGIT, RESIDUAL_ROUNDING, ROUNDING, SAME_AS_DOUBLES, SEQUENCE_LIMIT, SUMMED_FIG1
 
 
 def solved(printed, highest, *, digits=None, **options):
@@ -91,7 +78,7 @@ def test_the_breather_of_fig_9_is_not_a_torus():
     torus = solved(FIG9_BREATHER, FIG9_BREATHER.order)
     assessment = assess(torus.series, torus)
     assert assessment.headline == "not a torus"
-    assert "does not settle" in assessment.reasons[-1]
+    assert "does not settle" in assessment.reasons[-2]
     assert assessment.root_uncertainty > 1e-3
     assert assessment.record()["verdict"] == "not a torus"
     assert 0.99 < assessment.growth < 1.3009149 / 1.2869859  # terms grow by A / (end of the series), times k^-3/2 of a square root
@@ -104,6 +91,7 @@ def test_other_amplitudes_are_not_those_of_a_torus(change):
     moved = replace(torus, amplitudes={25: change * torus.amplitudes[25]})
     assessment = assess(torus.series, moved)
     assert assessment.word == "not a torus"
+    assert "refine may find one" in assessment.reasons[-1]
     assert assessment.root_uncertainty == pytest.approx(abs(1 / change - 1), rel=DIFFERENCE_OF_DOUBLES)
 
 
@@ -132,6 +120,8 @@ def test_residuals_are_those_of_the_torus_cut_at_every_order(name, points):
         expected = replace(torus, order=k).residual(points)
         assert assessment.residuals[k] == pytest.approx(expected, rel=RESIDUAL_ROUNDING, abs=ROUNDING)
     assert assessment.best_order == int(np.argmin(assessment.residuals))
+    if assessment.residuals.min() > RESIDUAL_ROUNDING:
+        assert best_order(torus) == assessment.best_order
 
 
 def test_with_digits_residuals_go_on_where_doubles_end():
@@ -140,7 +130,7 @@ def test_with_digits_residuals_go_on_where_doubles_end():
         points = 16 if k > 3 else 64
         assert assessment.residuals[k] == pytest.approx(replace(torus, order=k).residual(points), rel=RESIDUAL_ROUNDING)
     assert (assessment.residuals[1:] < assessment.residuals[:-1]).all()
-    assert assessment.residuals[-1] < LONG_SERIES_RESIDUAL
+    assert assessment.residuals[-1] < tolerances.LONG_SERIES_RESIDUAL
     assert "certified" not in " ".join(assessment.reasons)
     assert assessment.record()["certified"] is True
 
@@ -181,7 +171,7 @@ def test_the_torus_of_fig_1_is_undone_by_one_small_divisor():
     last = assessment.terms[-1]
     assert (last.mode, last.harmonic) == (3, (5, -4))
     assert "mode 3, harmonic (5,-4), divisor 3.4e-05" in " ".join(assessment.reasons)
-    assert assessment.growth**2 == pytest.approx(1.494248, rel=GROWTH_OF_TERMS)  # tests/paper/test_convergence.py
+    assert assessment.growth**2 == pytest.approx(1.494248, rel=tolerances.GROWTH_OF_TERMS)  # tests/paper/test_convergence.py
     assert assessment.radius == 1 / assessment.growth
     assert assessment.resummed_residual < SUMMED_FIG1 < assessment.residuals.min()
 
@@ -225,51 +215,15 @@ def test_amplitudes_that_move_apart_are_as_uncertain_as_their_least_change():
     assert root_uncertainty_of(torus.amplitudes, torus.history, growing) == pytest.approx(0.2)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("name", CASES)
-def test_a_record_is_strict_json(name):
-    """No Infinity and no NaN, which JSON does not have; what is not finite is null."""
-    torus, assessment = judged(name)
-    record = json.loads(json.dumps(assessment.record(), allow_nan=False))
-    assert record["verdict"] == assessment.headline
-    assert record["reasons"] == list(assessment.reasons)
-    assert len(record["residuals"]) == len(record["energy_errors"]) == torus.order + 1
-    assert (record["order"], record["frequency_order"], record["best_order"]) == (torus.order, torus.frequency_order, assessment.best_order)
-    assert (record["root_uncertainty"] is None) == math.isinf(assessment.root_uncertainty)
-    assert (record["radius_by_poles"] is None) == math.isinf(assessment.pole_radius)
-    assert record["certified"] is (None if torus.digits is None else True)
-    written = record["amplitudes_by_frequency_order"][str(torus.frequency_order)]
-    assert [float(a) for a in written] == pytest.approx([float(a) for a in torus.amplitudes.values()], rel=ROUNDING)
-
-
-def test_short_numbers():
-    assert short(1 / 3) == 0.333333
-    assert short(math.inf) is short(math.nan) is short(-math.inf) is None
-
-
 @pytest.mark.parametrize(("doubles", "digits"), [("small torus", "small torus, digits"), ("order 2", "order 2, digits")])
 def test_digits_change_no_word_and_no_evidence(doubles, digits):
     plain, precise = judged(doubles)[1], judged(digits)[1]
     assert (plain.word, plain.frequency_order) == (precise.word, precise.frequency_order)
     assert [(t.order, t.mode, t.harmonic) for t in plain.terms] == [(t.order, t.mode, t.harmonic) for t in precise.terms]
     visible = plain.residuals > 1e-9
-    assert plain.residuals[visible] == pytest.approx(precise.residuals[visible], rel=DOUBLE_RESIDUAL)
+    assert plain.residuals[visible] == pytest.approx(precise.residuals[visible], rel=tolerances.DOUBLE_RESIDUAL)
     for K, amplitudes in plain.amplitudes.items():
         assert amplitudes == pytest.approx(tuple(map(float, precise.amplitudes[K])), rel=SAME_AS_DOUBLES)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", ["small torus", "small torus, digits"])
-def test_progress_goes_from_the_first_order_to_the_end(name):
-    torus, _ = judged(name)
-    calls = []
-    assess(torus.series, torus, progress=lambda *told: calls.append(told))
-    steps = (torus.order + 1) * (2 if torus.digits else 1)
-    fractions = [fraction for _, fraction in calls]
-    assert {label for label, _ in calls} == {"verdict"}
-    assert fractions == sorted(fractions)
-    assert fractions[0] == 1 / steps
-    assert fractions[-1] == 1
 
 
 def test_every_sentence_states_one_residual():

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
+from symfpu import InputError
 from symfpu.cli.main import main
-from symfpu.errors import InputError
 from symfpu.workbench.choice import GIVEN, Choice
 from symfpu.workbench.solving import judged, solved
 from tests.tolerances import ROUNDING

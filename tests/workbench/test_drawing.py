@@ -6,9 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from symfpu.plots.series import coefficients, residuals, small_divisors
-from symfpu.plots.spectra import spectrum
-from symfpu.plots.tori import section
+from symfpu import plots
 from symfpu.workbench.choice import Choice
 from symfpu.workbench.drawing import HEIGHT, WIDTH, NotKnown, picture_svg
 from symfpu.workbench.solving import judged, solved
@@ -27,10 +25,10 @@ def drawn(found):
     """Every picture of the page that is SVG."""
     verdict = judged(found)
     pictures = {
-        "spectrum": lambda ax: spectrum(found.torus, ax),
-        "residuals": lambda ax: residuals(verdict, ax),
-        "divisors": lambda ax: small_divisors(found.torus, ax),
-        "section": lambda ax: section(found.torus, ax),
+        "spectrum": lambda ax: plots.spectrum(found.torus, ax),
+        "residuals": lambda ax: plots.residuals(verdict, ax),
+        "divisors": lambda ax: plots.small_divisors(found.torus, ax),
+        "section": lambda ax: plots.section(found.torus, ax),
     }
     return {name: picture_svg(draw, name) for name, draw in pictures.items()}
 
@@ -65,7 +63,7 @@ def test_every_line_and_label_is_there(drawn):
 
 def test_what_is_not_known_is_not_left_out(found):
     with pytest.raises(NotKnown):
-        picture_svg(lambda ax: coefficients(found.torus, ax), "coefficients")
+        picture_svg(lambda ax: plots.coefficients(found.torus, ax), "coefficients")
 
 
 @pytest.mark.parametrize(

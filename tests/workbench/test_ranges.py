@@ -1,12 +1,12 @@
-"""Sliders: they go along what has tori, and their numbers are as one would type them."""
+"""Sliders: they go along what has tori, their numbers are as one would type them, and they are heard at once."""
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
+from symfpu import Chain, InputError
 from symfpu.workbench.choice import GIVEN, Choice
+from symfpu.workbench.controls import Controls
 from symfpu.workbench.ranges import energies, ranges, typed
 from symfpu.workbench.solving import solved
 
@@ -42,3 +42,14 @@ def test_where_sliders_stand_first_there_are_tori(law, kind):
 def test_modes_that_are_none_are_refused():
     with pytest.raises(InputError):
         ranges(Chain(8, beta=1), (9,), "frequencies")
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore:Widget.name:PendingDeprecationWarning")  # older Panels know no other word
+def test_every_part_of_a_slider_is_heard_at_once():
+    pytest.importorskip("panel")
+    controls = Controls(Choice(given="energy"), lambda choice: None)
+    for slider in (controls.order, *controls.sliders):
+        waits = [part._debounce for part in slider.select() if hasattr(part, "_debounce")]
+        assert waits
+        assert not any(waits)

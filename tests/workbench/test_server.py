@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from symfpu import InputError, SymfpuError
 from symfpu.cli.main import main
-from symfpu.errors import InputError, SymfpuError
 from symfpu.workbench.server import HOST, Guard, free_port, panel
 
 

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
 from symfpu.chain.bonds import Law
-from symfpu.chain.potentials.expressions.text import parsed, refused, stretch, text_of
+from symfpu.chain.potentials.expressions.text import (
+    named_stretch,
+    parsed,
+    refused,
+    stretch,
+    text_of,
+)
 from symfpu.chain.potentials.polynomial import HIGHEST_DEGREE, polynomial
-from symfpu.chain.potentials.potential import Growth, Potential
+from symfpu.chain.potentials.potential import Growth, Potential, checked_coupling
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Arithmetic
+from symfpu.numbers.public import public
 
 OTHER_NAMES = ("expr",)
 DIGITS, MOST_DIGITS = 50, 2000
 SHORTEST = 32  # coefficients at once; twice as many when they do not suffice
+LARGEST_POWER_OF_TEN = 300  # of coefficients, which laws take as doubles
+LARGEST_COEFFICIENT = Fraction(10**LARGEST_POWER_OF_TEN)
 LONGEST_ZERO = 64  # coefficients that may all be zero before V is taken for r^2/2
 
 
@@ -48,13 +56,15 @@ class Expression(Potential):
         import sympy
 
         r = stretch()
-        V = sympy.expand(parsed(self.formula))
-        return int(sympy.degree(V, r)) if V.is_polynomial(r) else None
+        V = parsed(self.formula)
+        return int(sympy.Poly(V, r).degree()) if V.is_polynomial(r) else None
 
     @cached_property
     def even(self) -> bool:
         import sympy
 
+        if any(self.tension_series(LONGEST_ZERO)[::2]):
+            return False
         r, V = stretch(), parsed(self.formula)
         return bool(sympy.expand(V - V.subs(r, -r)) == 0)
 
@@ -122,6 +132,7 @@ class Expression(Potential):
         return f"from_expression({self.formula!r}{digits})"
 
 
+@public
 def from_expression(V: Any, r: Any = "r", digits: int | str = DIGITS) -> Potential:
     """The potential V(r) of a bond, an expression of SymPy or SymEngine in r, or as text.
 
@@ -147,8 +158,7 @@ def from_expression(V: Any, r: Any = "r", digits: int | str = DIGITS) -> Potenti
     Chain(N=8, alpha=0.25)
     """
     if isinstance(V, str):
-        V = parsed(V) if str(r).strip() == "r" else parsed(V.replace(str(r), "r"))
-        r = stretch()
+        V, r = parsed(V, named_stretch(r)), stretch()
     potential = Expression(text_of(V, r), _digits(digits))
     _check_start(potential)
     return _as_polynomial(potential) or potential
@@ -180,12 +190,16 @@ def _check_start(potential: Expression) -> None:
     if stiffness != 1:
         allowed = f"V with unit stiffness, V''(0) = 1 and not {float(stiffness):.6g}"
         raise refused(V, allowed, "divide it by its stiffness")
-    if not any(_beyond(potential)):
+    beyond = potential.tension_series(LONGEST_ZERO)[2:]
+    if not any(beyond):
         raise refused(V, "V with a term beyond r^2/2", "add one: 'r**2/2 + r**3/3'")
-
-
-def _beyond(potential: Expression) -> Iterable[Fraction]:
-    return potential.tension_series(LONGEST_ZERO)[2:]
+    lowest = next(n for n, c in enumerate(beyond, 3) if c)
+    checked_coupling(beyond[lowest - 3], f"c_{lowest} of V")
+    for n, c in enumerate(beyond, 3):
+        if abs(c) > LARGEST_COEFFICIENT:
+            allowed = f"V whose Taylor coefficients are below 1e{LARGEST_POWER_OF_TEN}"
+            advice = f"c_{n} is not: take another unit of length"
+            raise refused(V, allowed, advice)
 
 
 def _as_polynomial(potential: Expression) -> Potential | None:

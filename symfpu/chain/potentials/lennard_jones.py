@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -11,6 +12,7 @@ from symfpu.chain.potentials.potential import Growth, Potential, checked_couplin
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Arithmetic
 from symfpu.numbers.functions import expm1, expm2, log1p
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal
 
 OTHER_NAMES = ("lj",)
@@ -21,6 +23,10 @@ class LennardJonesLaw(NamedTuple):
 
     m: Any
     n: Any
+
+    @staticmethod
+    def takes_lanes() -> bool:
+        return True  # its functions take lanes of numbers
 
     def potential(self, r: Any) -> Any:
         m, n, l = self.m, self.n, log1p(r)
@@ -81,12 +87,14 @@ class LennardJones(Potential):
 
 
 def _binomial(power: Fraction, k: int) -> Fraction:
-    value = Fraction(1)
-    for i in range(k):
-        value *= (power - i) / (i + 1)
-    return value
+    """The coefficient of r^k in (1 + r)^power, power < 0."""
+    if power.denominator == 1:
+        return Fraction((-1) ** k * math.comb(k - 1 - power.numerator, k))
+    factors = (power.numerator - i * power.denominator for i in range(k))
+    return Fraction(math.prod(factors), power.denominator**k * math.factorial(k))
 
 
+@public
 def lennard_jones(m: Number = 12, n: Number = 6) -> LennardJones:
     """The potential of Mie, m = 12 and n = 6 that of Lennard-Jones, of a bond.
 

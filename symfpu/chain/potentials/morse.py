@@ -11,6 +11,7 @@ from symfpu.chain.bonds import Law
 from symfpu.chain.potentials.potential import Growth, Potential, checked_coupling
 from symfpu.numbers.arithmetic import Arithmetic
 from symfpu.numbers.functions import expm1, expm2
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 
 
@@ -18,6 +19,10 @@ class MorseLaw(NamedTuple):
     """The functions of a bond."""
 
     a: Any
+
+    @staticmethod
+    def takes_lanes() -> bool:
+        return True  # its functions take lanes of numbers
 
     def potential(self, r: Any) -> Any:
         below = expm1(-self.a * r) / self.a
@@ -67,6 +72,7 @@ class Morse(Potential):
         return (1 - sympy.exp(-a * r)) ** 2 / (2 * a**2)
 
 
+@public
 def morse(a: Number) -> Morse:
     """Morse's potential V = (1 - e^(-ar))^2/(2a^2) of a bond; c_3 = -3a/2, c_4 = 7a^2/6.
 

@@ -10,6 +10,7 @@ from symfpu.chain.bonds import Law
 from symfpu.chain.potentials.potential import Potential, checked_coupling
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Arithmetic
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 
 OTHER_NAMES = ("poly",)
@@ -51,6 +52,7 @@ class Polynomial(Potential):
         return total
 
 
+@public
 def polynomial(*coefficients: Number) -> Polynomial:
     """The potential V = r^2/2 + c_3 r^3/3 + c_4 r^4/4 + ... + c_n r^n/n of a bond.
 

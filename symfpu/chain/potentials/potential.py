@@ -12,6 +12,9 @@ from symfpu.numbers.arithmetic import Arithmetic
 from symfpu.numbers.typed import Number, decimal, exact
 
 SMALLEST_COUPLING = Fraction(1, 10**50)
+COMPARED = (
+    12  # the highest power of r at which a potential is held against its own coefficients
+)
 
 
 def checked_coupling(value: Number, name: str, *, zero: bool = True) -> Fraction:
@@ -38,6 +41,13 @@ class Growth(NamedTuple):
     def scaled(self, unit: Fraction) -> Growth:
         """The same of the tension times `unit`, as a function of r times `unit`."""
         return Growth(self.weight * unit, self.slope / unit, self.rate / unit)
+
+    def taylor(self, highest: int) -> list[Fraction]:
+        """The coefficients of weight g, of r^0 up to the highest power."""
+        found = [Fraction(self.weight)]
+        for power in range(highest):
+            found.append(found[-1] * (self.rate - power * self.slope) / (power + 1))
+        return found
 
 
 class Potential(ABC):
@@ -83,7 +93,10 @@ class Potential(ABC):
         """V(r) as an expression of SymPy."""
 
     def growths(self) -> tuple[Growth, ...]:
-        """The tension by functions that solve differential equations; empty where it is not."""
+        """The tension by functions that solve differential equations; empty where it is not.
+
+        Series of an even V do not use them, whatever an author returns: proofs do.
+        """
         return ()
 
     @property
@@ -93,3 +106,23 @@ class Potential(ABC):
 
     def __repr__(self) -> str:
         return f"{self.kind}({', '.join(map(decimal, self.parameters))})"
+
+
+def require_consistent(potential: Potential) -> None:
+    """InputError where `even` or `growths()` contradict exact coefficients, up to r^COMPARED."""
+    if not potential.exact:
+        return
+    numbers = {n: potential.coefficient(n) for n in range(3, COMPARED + 1)}
+    odd = [n for n, number in numbers.items() if n % 2 and number]
+    if potential.even and odd:
+        given = f"coefficient({odd[0]}) = {numbers[odd[0]]}"
+        allowed = f"coefficient({odd[0]}) = 0, since V is even"
+        raise InputError("potential", given, allowed, "correct even or coefficient")
+    growths = [growth.taylor(COMPARED - 1) for growth in potential.growths()]
+    for n, number in {2: Fraction(1), **numbers}.items():
+        total = sum(taylor[n - 1] for taylor in growths)
+        if growths and total != number:
+            given = f"growths with c_{n} = {total}"
+            allowed = f"growths whose sum has c_{n} = {number}, as the potential has"
+            advice = "correct growths or coefficient"
+            raise InputError("potential", given, allowed, advice)

@@ -11,6 +11,7 @@ from symfpu.chain.bonds import Law
 from symfpu.chain.potentials.potential import Growth, Potential, checked_coupling
 from symfpu.numbers.arithmetic import Arithmetic
 from symfpu.numbers.functions import expm1, expm2
+from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 
 
@@ -18,6 +19,10 @@ class TodaLaw(NamedTuple):
     """The functions of a bond; rate is 2a."""
 
     rate: Any
+
+    @staticmethod
+    def takes_lanes() -> bool:
+        return True  # its functions take lanes of numbers
 
     def potential(self, r: Any) -> Any:
         return expm2(self.rate * r) / (self.rate * self.rate)
@@ -64,6 +69,7 @@ class Toda(Potential):
         return (sympy.exp(rate * r) - 1 - rate * r) / rate**2
 
 
+@public
 def toda(a: Number) -> Toda:
     """Toda's potential V = (e^(2ar) - 1 - 2ar)/(4a^2) of a bond; c_3 = a, c_4 = 2a^2/3.
 

@@ -8,7 +8,7 @@ from functools import cache
 from importlib import import_module
 
 from symfpu.chain import potentials
-from symfpu.chain.potentials.potential import Potential
+from symfpu.chain.potentials.potential import Potential, require_consistent
 from symfpu.errors import InputError
 
 EXAMPLES = "such as toda:1/2, poly:0.33,0,1/5 or lj:12,6"
@@ -49,10 +49,14 @@ def potential_of_text(text: str) -> Potential:
 
 
 def potential_given(value: object) -> Potential:
-    """A potential as it was given, or as typed; InputError for anything else."""
+    """A potential as it was given, or as typed; InputError for anything else.
+
+    And for one that contradicts itself.
+    """
     if isinstance(value, str):
         value = potential_of_text(value)
     if not isinstance(value, Potential):
         allowed = "a potential, or a text such as 'toda:1/2'"
         raise InputError("potential", value, allowed, "write potential=toda('1/2')")
+    require_consistent(value)
     return value

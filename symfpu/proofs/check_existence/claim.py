@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from symfpu.proofs.check_existence.reading import MOST_BITS, unpacked
 from symfpu.proofs.check_existence.shape import Shape, read_shape
-from symfpu.proofs.reading import Json, fraction, need, whole
+from symfpu.proofs.reading import Json, fraction, fractions, need, whole
 
 MOST_HARMONICS = 4096
 HIGHEST_DEGREE = 200
@@ -170,19 +170,19 @@ def read_force(data: Json) -> Force:
     need(type(texts) is list and type(growths) is list, "wrong coefficients")
     need(bool(texts) != bool(growths), "a polynomial or functions, one of the two")
     if growths:
-        return force_of_growths(read_growths(growths), degree)
+        return force_of_growths(read_growths(growths, degree), degree)
     need(len(texts) == degree - 1, "wrong coefficients")
-    values = [fraction(text, "a coefficient of V") for text in texts]
+    values = fractions(texts, 1, "a coefficient of V")
     need(any(values), "the chain is harmonic")
     return Force({k: c for k, c in enumerate(values, 2) if c}, [], degree)
 
 
-def read_growths(entries: Any) -> list[Growth]:
+def read_growths(entries: Any, degree: int) -> list[Growth]:
     """The functions of a tension; r itself has the coefficient 1."""
     need(len(entries) <= 8, "too many functions")
     found = []
     for entry in entries:
-        weight, slope, rate = (fraction(text, "a function's number") for text in entry)
+        weight, slope, rate = fractions(entry, degree, "a function's number")
         found.append(Growth(weight, slope, rate))
     need(sum(g.weight * g.rate for g in found) == 1, "the linear force is not r")
     return found

@@ -7,6 +7,7 @@ from typing import Any
 from symfpu.proofs.reading import need
 
 MOST_STEPS = 2 * 10**6
+SUMS_A_STEP = 32  # signed sums that take as long as one step
 
 
 class Budget:
@@ -18,11 +19,19 @@ class Budget:
     def counted(self, items: Iterable[Any]) -> Iterator[Any]:
         """The items, each a step."""
         for item in items:
-            self.steps += 1
-            need(
-                self.steps <= MOST_STEPS, "checking it would take more than 2 million steps"
-            )
+            self.spend(1)
             yield item
+
+    def spend(self, steps: int) -> None:
+        """So many at once."""
+        self.steps += steps
+        need(self.steps <= MOST_STEPS, "checking it would take more than 2 million steps")
+
+
+def coupling_steps(N: int, factors: int) -> int:
+    """Steps of the couplings of a product, beyond those of three factors."""
+    sums = min(1 << factors, 4 * N)
+    return factors * sums // SUMS_A_STEP
 
 
 def couplings(N: int, *modes: int) -> list[tuple[int, int]]:

@@ -6,7 +6,7 @@ from operator import mul, sub
 from typing import Any, NamedTuple
 
 from symfpu.proofs.check_propagation.case import Case
-from symfpu.proofs.check_propagation.couplings import Budget, couplings
+from symfpu.proofs.check_propagation.couplings import Budget, coupling_steps, couplings
 from symfpu.proofs.reading import need
 
 Monomial = tuple[int, ...]
@@ -73,6 +73,7 @@ class Recursion:
                 continue
             number = self.number(g)
             for modes, value in self.products(n, m):
+                self.budget.spend(coupling_steps(self.case.N, n))
                 for q, coupling in couplings(self.case.N, *modes):
                     self.add(bracket, q, {(): number}, value, -coupling)
 
@@ -86,7 +87,7 @@ class Recursion:
 
     def add_corrections(self, m: Monomial, bracket: ByMode) -> None:
         """+ sum W_q u_q over the monomials f = |w|^(2e) that divide m, neither of them trivial."""
-        for f in divisors_of(m):
+        for f in self.budget.counted(divisors_of(m)):
             diagonal = f[::2] == f[1::2]
             if not diagonal or not 0 < sum(f) < sum(m) - 1:
                 continue

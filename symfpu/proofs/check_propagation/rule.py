@@ -3,7 +3,7 @@
 from itertools import combinations_with_replacement, product
 
 from symfpu.proofs.check_propagation.case import Case
-from symfpu.proofs.check_propagation.couplings import Budget, couplings
+from symfpu.proofs.check_propagation.couplings import Budget, coupling_steps, couplings
 
 
 def propagation_rule(case: Case, budget: Budget) -> list[list[int]]:
@@ -60,6 +60,8 @@ def coupled_sets(case: Case, last: int, budget: Budget) -> list[set[int]]:
 def coupled_modes(case: Case, factors: list[set[int]], budget: Budget) -> set[int]:
     """The modes that products of one mode of each set drive."""
     found = set()
-    for modes in budget.counted(product(*factors)):
+    steps = 1 + coupling_steps(case.N, len(factors))
+    for modes in product(*factors):
+        budget.spend(steps)
         found |= {q for q, _ in couplings(case.N, *modes)}
     return found

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from symfpu.proofs.check_propagation.case import Case, read_case
+from symfpu.proofs.check_propagation.case import Case, check_sizes, read_case
 from symfpu.proofs.check_propagation.claims import (
     check_conclusions,
     check_names,
@@ -25,6 +25,7 @@ from symfpu.proofs.reading import Json, verified
 def check_certificate(data: Json) -> list[str]:
     """Every claim in turn; what was checked, in three lines."""
     case, budget = read_case(data), Budget()
+    check_sizes(data, case)
     check_names(data)
     orders = excitation_orders(data, case)
     zeros = check_zeros_are_complete(data, case, orders)

@@ -38,7 +38,8 @@ def check_identity(recursion: Recursion, q: int, k: int) -> None:
     """The term of mode q at order k is zero, monomial by monomial."""
     variables = range(2 * len(recursion.case.seeds))
     degree = recursion.case.degree(k)
-    for chosen in combinations_with_replacement(variables, degree):
+    monomials = combinations_with_replacement(variables, degree)
+    for chosen in recursion.budget.counted(monomials):
         m = tuple(map(chosen.count, variables))
         polynomial = recursion.coefficients(m).get(q, {})
         need(not any(polynomial.values()), f"mode {q} at order {k} is not zero")

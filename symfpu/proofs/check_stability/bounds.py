@@ -1,5 +1,6 @@
 """The three bounds of the theorem on one exponent: Y, Z and Z2, computed anew."""
 
+from collections.abc import Iterator
 from fractions import Fraction
 from operator import mul
 
@@ -154,7 +155,22 @@ class Bounds:
         unit = 1 << (2 * PLACES + WEIGHT_BITS + self.exponent.bits)
         sizes = (abs(x) + abs(y) for row in self.exponent.rows.values() for x, y in row)
         size = Fraction(sum(sizes), 1 << self.exponent.bits)
-        return Fraction(total, unit) + self.of_bonds(self.slopes.lost) * size
+        known = Fraction(total, unit) + self.of_bonds(self.slopes.lost) * size
+        return known + self.moved_residual()
+
+    def moved_residual(self) -> Fraction:
+        """|A (L* v - L v)| where L* has the frequency of the true orbit."""
+        total = Fraction(0)
+        for (n, q), size in self.sizes_of_coefficients():
+            total += self.norm((n, q)) * self.divisors.moved((n, q)) * size
+        return total / (1 << (PLACES + WEIGHT_BITS))
+
+    def sizes_of_coefficients(self) -> Iterator[tuple[Place, Fraction]]:
+        """|Re v| + |Im v| of the places where v is not zero."""
+        for n, row in self.exponent.rows.items():
+            for q, (x, y) in zip(self.sector.allowed(n), row, strict=True):
+                if x or y:
+                    yield (n, q), Fraction(abs(x) + abs(y), 1 << self.exponent.bits)
 
     def reached(self) -> range:
         """Harmonics of L v."""
@@ -192,7 +208,29 @@ class Bounds:
     def linear(self) -> Fraction:
         """Z, above |I - A DF|."""
         columns = max(self.of_columns(), self.of_sigma_column(), self.of_tail())
-        return columns + self.of_bonds(self.slopes.cut)
+        return columns + self.of_bonds(self.slopes.cut) + self.moved_columns()
+
+    def moved_columns(self) -> Fraction:
+        """|A (DF* - DF)| where DF* has the frequency of the true orbit, column by column."""
+        if not self.slopes.orbit.omega_off:
+            return Fraction(0)
+        beyond = self.last + 1
+        modes = range(1, self.N)
+        worst = max(self.divisors.moved_beyond(beyond, q) for q in modes)
+        for n in range(-self.last, self.last + 1):
+            for q, norm in zip(self.sector.allowed(n), self.norms[n], strict=True):
+                if (n, q) != self.exponent.kappa:
+                    moved = norm * self.divisors.moved((n, q))
+                    worst = max(worst, moved / (ONE * self.exponent.weight((n, q))))
+        return max(worst, self.moved_sigma_column())
+
+    def moved_sigma_column(self) -> Fraction:
+        """The column of sigma: 2 |move of z| |v| / Omega^2."""
+        total = Fraction(0)
+        for (n, q), size in self.sizes_of_coefficients():
+            moved = 2 * self.divisors.moved_angle(n) * self.divisors.most[q] * size
+            total += self.norm((n, q)) * moved
+        return total / (ONE * ONE * self.exponent.weights[self.exponent.kappa])
 
     def of_columns(self) -> Fraction:
         """The largest column of a place but kappa, up to harmonic M + K."""
@@ -276,6 +314,7 @@ class Bounds:
         unit = 1 << (2 * PLACES)
         for n in range(-self.last, self.last + 1):
             size = Fraction(self.divisors.size_of_angle(n), ONE)
+            size += self.divisors.moved_angle(n)
             for q, norm in zip(self.sector.allowed(n), self.norms[n], strict=True):
                 if (n, q) != self.exponent.kappa:
                     weight = self.exponent.weight((n, q))
@@ -292,7 +331,7 @@ class Bounds:
     def curvature_beyond(self) -> tuple[Fraction, Fraction]:
         """e1 and e2 of places beyond M + K: both fall with the harmonic.
 
-        |z| / |z^2 - Omega^2| falls with |z|, on both sides.
+        |z| / |z^2 - Omega^2| falls with |z|, on both sides, and so does what z may move.
         """
         n = self.last + 1
         divisors = self.divisors
@@ -300,7 +339,8 @@ class Bounds:
         modes = range(1, self.N)
         worst = max(2 * divisors.inverse_beyond(n, q) * divisors.most[q] for q in modes)
         second = Fraction(worst, ONE * ONE)
-        return second * Fraction(size, ONE), second
+        moved = max(divisors.moved_angle(n), divisors.moved_angle(-n))
+        return second * (Fraction(size, ONE) + moved), second
 
     def check_contraction(self) -> tuple[Fraction, Fraction]:
         """The map takes the ball of the radius into itself and contracts it; Y and Z."""

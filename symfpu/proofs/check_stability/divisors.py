@@ -36,7 +36,7 @@ class Divisors:
 
     def __init__(self, orbit: Orbit, exponent: Exponent, free: int) -> None:
         self.exponent, self.free = exponent, free
-        self.N, self.omega = orbit.N, orbit.omega
+        self.N, self.omega, self.omega_off = orbit.N, orbit.omega, orbit.omega_off
         self.read_frequencies()
         self.check_beyond()
 
@@ -86,3 +86,28 @@ class Divisors:
         """Above |Re| + |Im| of 1/lambda_q of every harmonic from n on."""
         found = ONE * ONE // self.edge(n, q) + 1
         return found if self.exponent.reals else found * 3 // 2 + 1  # above the root of 2
+
+    # what an error of the frequency moves: z = (n + turns) omega + value goes with it
+
+    def moved_angle(self, n: int) -> Fraction:
+        """Above what z of a harmonic moves."""
+        return abs(n + self.exponent.turns) * self.omega_off
+
+    def moved(self, place: Place) -> Fraction:
+        """Above |Re| + |Im| of what lambda moves: of 2 z d + d^2, over Omega^2."""
+        n, q = place
+        move = self.moved_angle(n)
+        size = Fraction(self.size_of_angle(n), ONE)
+        return move * (2 * size + move) * Fraction(self.most[q], ONE)
+
+    def moved_beyond(self, n: int, q: int) -> Fraction:
+        """Above |1/lambda| times what lambda moves, for every harmonic from n on.
+
+        With x = |Re z| and s = |Re value| + |Im value| the move of z is at most (x + s) e,
+        e = omega_off / omega, and |z| at most x + s. (x + s)^2 / (x^2 - Omega^2) falls with x.
+        """
+        one, part = self.exponent, self.omega_off / self.omega
+        far = n * self.omega - abs(one.real) + abs(one.value) + abs(one.imaginary)
+        of_divisor = Fraction(self.inverse_beyond(n, q) * self.most[q], ONE * ONE)
+        # x is at least n omega - |Re sigma|, where the divisor is taken
+        return part * (2 + part) * far**2 * of_divisor

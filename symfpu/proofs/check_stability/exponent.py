@@ -24,11 +24,13 @@ Gaussian = tuple[int, int]  # real and imaginary part
 class Exponent(NamedTuple):
     """The numbers of a certificate for one exponent.
 
-    sigma : base folds omega / 2 + value, exactly. rows : v 2^bits by harmonic, as long as the
-    allowed modes, without kappa none is 1. weights : by place, units 2^-WEIGHT_BITS.
+    sigma : turns omega + value, exactly, turns = base folds / 2. rows : v 2^bits by harmonic, as
+    long as the allowed modes, without kappa none is 1. weights : by place, units 2^-WEIGHT_BITS.
     """
 
     sector: Sector
+    turns: Fraction
+    value: Fraction
     real: Fraction
     imaginary: Fraction
     bits: int
@@ -45,8 +47,19 @@ class Exponent(NamedTuple):
 
     @property
     def off(self) -> Fraction:
-        """Above |sigma* - sigma|."""
+        """Above what the value of the zero is off this one."""
         return self.radius * (1 << WEIGHT_BITS) / self.weights[self.kappa]
+
+    def in_turns(self, orbit: Orbit) -> tuple[Fraction, Fraction]:
+        """The ends of an interval that holds sigma* over the frequency, sigma* real.
+
+        It is turns + value* / omega*.
+        """
+        least, most = orbit.omega - orbit.omega_off, orbit.omega + orbit.omega_off
+        ends = [
+            (self.value + off) / w for off in (-self.off, self.off) for w in (least, most)
+        ]
+        return self.turns + min(ends), self.turns + max(ends)
 
     def weight(self, place: Place) -> int:
         """w of a place, 1 beyond `free` harmonics."""
@@ -64,7 +77,8 @@ def read_exponent(data: Json, orbit: Orbit, free: int) -> Exponent:
     values = [Fraction(whole(x, -(2**70), 2**70, "sigma"), 1 << bits) for x in parts]
     imaginary = values[1] if len(parts) == 2 else Fraction(0)
     need(len(parts) == 1 or imaginary, "a complex sigma has an imaginary part")
-    real = values[0] + base * sector.folds * orbit.omega / 2
+    turns = Fraction(base * sector.folds, 2)
+    real = values[0] + turns * orbit.omega
     rows = read_rows(data["vector"], sector, len(parts))
     n, q = data["kappa"]
     kappa = whole(n, -free, free, "kappa"), whole(q, 1, orbit.N - 1, "kappa")
@@ -77,7 +91,8 @@ def read_exponent(data: Json, orbit: Orbit, free: int) -> Exponent:
     need(ascending and len(block) <= MOST_BLOCK, "the block is not of ascending places")
     need(kappa in block, "kappa is not in the block")
     radius = dyadic(data["radius"], "radius")
-    return Exponent(sector, real, imaginary, bits, kappa, rows, block, weights, radius)
+    sigma = (turns, values[0], real, imaginary)
+    return Exponent(sector, *sigma, bits, kappa, rows, block, weights, radius)
 
 
 def read_rows(parts: Any, sector: Sector, count: int) -> dict[int, list[Gaussian]]:

@@ -4,7 +4,8 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from symfpu.proofs import check_existence
-from symfpu.proofs.check_existence.claim import Force
+from symfpu.proofs.check_existence.claim import Claim, Force
+from symfpu.proofs.check_existence.reading import stated
 from symfpu.proofs.reading import CertificateError, Json, check_kind, dyadic, need
 
 Place = tuple[int, int]  # harmonic n, mode q
@@ -13,13 +14,15 @@ Place = tuple[int, int]  # harmonic n, mode q
 class Orbit(NamedTuple):
     """What the certificate of existence has proved: an orbit within `radius` of these numbers.
 
-    force : phi(r) = V'(r) - r. rows : c_q[n] 2^bits by harmonic, all modes.
+    force : phi(r) = V'(r) - r. omega : the frequency, or the middle of an interval that holds it;
+    omega_off : above what the frequency is off it. rows : c_q[n] 2^bits by harmonic, all modes.
     """
 
     N: int
     force: Force
     seed: int
     omega: Fraction
+    omega_off: Fraction
     bits: int
     rows: list[list[int]]
     radius: Fraction
@@ -42,15 +45,30 @@ def check_existence_of(data: Json) -> str:
 def orbit_of(data: Json) -> Orbit:
     """The numbers of a certificate of existence that has been checked."""
     claim = check_existence.read_claim(data)
-    need(not claim.bordered, "stability needs an orbit of exact frequency")
+    need(not claim.half_width, "stability is proved of one orbit, not of a segment")
     need(not claim.shape.travelling, "stability is proved with fixed ends")
     rows = [[0] * claim.N for _ in range(claim.harmonics + 1)]
     for (n, q), c in claim.orbit.items():
         rows[n][q] = c
-    radius = dyadic(data["radius"], "radius")
     return Orbit(
-        claim.N, claim.force, claim.shape.seed, claim.omega, claim.bits, rows, radius
+        N=claim.N,
+        force=claim.force,
+        seed=claim.shape.seed,
+        omega=claim.omega,
+        omega_off=off_of_frequency(claim, data),
+        bits=claim.bits,
+        rows=rows,
+        radius=dyadic(data["radius"], "radius"),
     )
+
+
+def off_of_frequency(claim: Claim, data: Json) -> Fraction:
+    """Above |omega* - omega|: 0 where omega is given, else by the interval that is proved."""
+    if not claim.bordered:
+        return Fraction(0)
+    off = max(abs(end - claim.omega) for end in stated(data["frequency"], "frequency"))
+    need(off < claim.omega / 2, "the frequency is not known well enough")
+    return off
 
 
 class Sector(NamedTuple):

@@ -59,14 +59,14 @@ def check_stable(orbit: Orbit, exponents: Iterable[Exponent]) -> str:
             f"exponents of a sector: {len(own)} where {sector.exponents} are due",
         )
         need(all(one.reals for one in own), "an exponent of a stable orbit is not real")
-        ends = sorted((one.real - one.off, one.real + one.off) for one in own)
-        zero, last = Fraction(0), sector.folds * orbit.omega / 2
+        ends = sorted(one.in_turns(orbit) for one in own)
+        zero, last = Fraction(0), Fraction(sector.folds, 2)
         points = [(zero, zero), *ends, (last, last)]
         for a, b in pairwise(points):
             need(
                 a[1] < b[0], "two exponents may be the same, or one at 0 or half the period"
             )
-            gaps.append((b[0] - a[1]) / orbit.omega)
+            gaps.append(b[0] - a[1])
     count = len(sectors_of(orbit))
     sectors = "its symmetry sector" if count == 1 else f"each of {count} symmetry sectors"
     return (

@@ -3,8 +3,9 @@
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from symfpu.proofs.check_torus.budget import Budget, budget_of
 from symfpu.proofs.check_torus.series import Harmonic, Row, Series
-from symfpu.proofs.reading import MOST_BITS, Json, fraction, need, whole
+from symfpu.proofs.reading import MOST_BITS, Json, fraction, fractions, need, whole
 
 LARGEST_N, MOST_ANGLES = 128, 4
 MOST_HARMONICS, HIGHEST_HARMONIC = 300_000, 2000
@@ -14,7 +15,7 @@ HIGHEST_DEGREE = 40
 class Claim(NamedTuple):
     """What the theorems are about: a chain, frequencies, a torus by particle 1 .. N-1.
 
-    couplings : of V'(r) - r by power of r.
+    couplings : of V'(r) - r by power of r. budget : the steps that its check may take.
     """
 
     N: int
@@ -22,6 +23,7 @@ class Claim(NamedTuple):
     seeds: list[int]
     omega: Row
     torus: list[Series]
+    budget: Budget
 
     @property
     def angles(self) -> int:
@@ -50,7 +52,7 @@ def read_claim(data: Json) -> Claim:
     bits = whole(data["bits"], 1, MOST_BITS, "bits")
     torus = read_series(data["torus"], bits, N, seeds, parity=0, even=True)
     check_angles(torus, len(seeds))
-    return Claim(N, couplings, list(seeds), omega, torus)
+    return Claim(N, couplings, list(seeds), omega, torus, budget_of(data))
 
 
 def check_angles(torus: list[Series], count: int) -> None:
@@ -63,7 +65,7 @@ def check_angles(torus: list[Series], count: int) -> None:
 def read_couplings(texts: Any) -> dict[int, Fraction]:
     """V'(r) - r = c_3 r^2 + c_4 r^3 + ..., by power of r."""
     need(type(texts) is list and 0 < len(texts) <= HIGHEST_DEGREE, "wrong coefficients")
-    values = [fraction(text, "a coefficient of V") for text in texts]
+    values = fractions(texts, 1, "a coefficient of V")
     need(any(values), "the chain is harmonic")
     return {k: c for k, c in enumerate(values, 2) if c}
 

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
+from symfpu.proofs.check_torus.budget import Budget, fraction_steps
 from symfpu.proofs.check_torus.claim import Claim
 from symfpu.proofs.check_torus.residual import GUARD, stretches
 from symfpu.proofs.check_torus.series import Row, Series, dot, product, shifted, turned
@@ -26,7 +27,7 @@ def check_energy(claim: Claim, residual: Row, entry: Any) -> list[str]:
         return []
     middle, radius = read_energy(entry)
     mean, error = mean_energy(claim)
-    slow = slowest(claim.omega, highest_of_energy(claim))
+    slow = slowest(claim.omega, highest_of_energy(claim), claim.budget)
     need(slow, "a harmonic of the energy does not turn")
     off = abs(mean - middle) + error + dot(speeds(claim), residual) / slow
     need(off <= radius, f"the energy may be {scientific(off)} from the stated one")
@@ -52,7 +53,7 @@ def fine(claim: Claim) -> list[Series]:
 
 def speeds(claim: Claim) -> Row:
     """Norms of the velocities."""
-    return [turned(x, claim.omega, Fraction(0), 1).norm for x in fine(claim)]
+    return [turned(x, claim.omega, Fraction(0), 1, claim.budget).norm for x in fine(claim)]
 
 
 def mean_energy(claim: Claim) -> Ball:
@@ -61,8 +62,8 @@ def mean_energy(claim: Claim) -> Ball:
     A particle or bond and its mirror image move alike, half a turn of some angles apart.
     """
     particles, bonds = fine(claim), stretches(fine(claim))
-    balls = [(2 * w, kinetic(x, claim.omega)) for x, w in halves(particles)]
-    balls += [(2 * w, potential(r, claim.couplings)) for r, w in halves(bonds)]
+    balls = [(2 * w, kinetic(x, claim)) for x, w in halves(particles)]
+    balls += [(2 * w, potential(r, claim)) for r, w in halves(bonds)]
     return weighted(balls)
 
 
@@ -73,19 +74,19 @@ def halves(every: list[Series]) -> list[tuple[Series, Fraction]]:
     return list(zip(every[: count + odd], weights, strict=True))
 
 
-def kinetic(x: Series, omega: Row) -> Ball:
+def kinetic(x: Series, claim: Claim) -> Ball:
     """<x'^2> / 2."""
-    y = turned(x, omega, Fraction(0), 1)
+    y = turned(x, claim.omega, Fraction(0), 1, claim.budget)
     return weighted([(Fraction(1, 2), mean_product(y, y))])
 
 
-def potential(r: Series, couplings: dict[int, Fraction]) -> Ball:
+def potential(r: Series, claim: Claim) -> Ball:
     """<V(r)>, r even in the angles; r^(k+1) from two lower powers."""
     powers = [r]
-    while 2 * len(powers) < max(couplings) + 1:
-        powers.append(product(powers[-1], r))
+    while 2 * len(powers) < max(claim.couplings) + 1:
+        powers.append(product(powers[-1], r, claim.budget))
     balls = []
-    for k, coupling in ({1: Fraction(1)} | couplings).items():
+    for k, coupling in ({1: Fraction(1)} | claim.couplings).items():
         lower = (k + 1) // 2
         mean = mean_product(powers[lower - 1], powers[k - lower])
         balls.append((coupling / (k + 1), mean))
@@ -113,10 +114,12 @@ def highest_of_energy(claim: Claim) -> list[int]:
     return [degree * max(map(abs, column)) for column in zip(*harmonics, strict=True)]
 
 
-def slowest(omega: Row, highest: Sequence[int]) -> Fraction:
+def slowest(omega: Row, highest: Sequence[int], budget: Budget) -> Fraction:
     """The least |nu.omega| of the box without nu = 0; the last of nu is one of two neighbours."""
     ranges = [range(-m, m + 1) for m in highest[:-1]]
-    need(math.prod(map(len, ranges)) <= MOST_HARMONICS, "too many harmonics of the energy")
+    count = math.prod(map(len, ranges))
+    need(count <= MOST_HARMONICS, "too many harmonics of the energy")
+    budget.spend(count * sum(fraction_steps(w, 0) for w in omega))
     unit = math.lcm(*(w.denominator for w in omega))
     rates, last = [int(w * unit) for w in omega[:-1]], int(omega[-1] * unit)
     least = last

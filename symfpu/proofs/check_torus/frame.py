@@ -50,7 +50,10 @@ class Frame:
         """Of a direction, or of its derivative by an angle."""
         x = self.by(d.x, *angles)
         fine = [shifted(series, max(series.places, self.places)) for series in x]
-        y = [turned(series, self.claim.omega, d.rate, 1) for series in fine]
+        y = [
+            turned(series, self.claim.omega, d.rate, 1, self.claim.budget)
+            for series in fine
+        ]
         parts = [[(Fraction(1), shifted(series, self.places))] for series in y]
         for m, twist in enumerate(d.twist):
             for part, series in zip(
@@ -64,18 +67,22 @@ class Frame:
         """Norms of F'(X) x + (rate + nu.omega)^2 x + 2 twist (nu.omega) nu X, by direction."""
         bonds = stretches([shifted(x, self.places) for x in self.claim.torus])
         terms = {k - 1: k * c for k, c in self.claim.couplings.items()}
-        slopes = [polynomial(r, terms) for r in bonds]
+        slopes = [polynomial(r, terms, self.claim.budget) for r in bonds]
         return [self.left_by(d, slopes) for d in self.directions]
 
     def left_by(self, d: Direction, slopes: list[Series]) -> Row:
         """The same of one direction, by particle."""
         fine = [shifted(x, self.places) for x in d.x]
         pairs = zip(stretches(fine), slopes, strict=True)
-        pushed = forces([combined([(1, r), (1, product(g, r))]) for r, g in pairs])
+        pushed = forces(
+            [combined([(1, r), (1, product(g, r, self.claim.budget))]) for r, g in pairs]
+        )
         norms = []
         for j, x in enumerate(fine):
             parts = [(Fraction(1), pushed[j])]
-            parts.append((Fraction(1), turned(x, self.claim.omega, d.rate, 2)))
+            parts.append(
+                (Fraction(1), turned(x, self.claim.omega, d.rate, 2, self.claim.budget))
+            )
             for tangent, twist in zip(self.tangents, d.twist, strict=False):
                 parts.append((2 * twist, tangent.y[j]))
             norms.append(combined(parts).norm)

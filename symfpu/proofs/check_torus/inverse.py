@@ -52,6 +52,8 @@ class Inverse:
         cut = [[shifted(x, COARSE) for x in (*c.y, *c.x)] for c in columns]
         rows = [[*p.x, *(mirror_sign(y) for y in p.y)] for p in self.partners]
         packing = Packing([x for entry in (*rows, *cut) for x in entry], len(rows[0]))
+        packing.check_places()
+        self.frame.claim.budget.spend(len(rows) * len(cut) * len(rows[0]) * packing.steps)
         packed = [[packing.packed(x) for x in column] for column in cut]
         found = []
         for i, (factor, row) in enumerate(zip(self.factors, rows, strict=True)):

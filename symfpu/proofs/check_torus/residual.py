@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
+from symfpu.proofs.check_torus.budget import Budget, fraction_steps
 from symfpu.proofs.check_torus.claim import Claim
 from symfpu.proofs.check_torus.series import Row, Series, combined, product, shifted, turned
 from symfpu.proofs.reading import need
@@ -24,12 +25,14 @@ def forces(tensions: Sequence[Series]) -> list[Series]:
     return [combined([(1, b), (-1, a)]) for a, b in pairwise(tensions)]
 
 
-def polynomial(r: Series, terms: dict[int, Fraction]) -> Series:
+def polynomial(r: Series, terms: dict[int, Fraction], budget: Budget) -> Series:
     """sum terms[k] r^k, k >= 1."""
     power, parts = r, []
     for k in range(1, max(terms) + 1):
-        power = power if k == 1 else product(power, r)
+        power = power if k == 1 else product(power, r, budget)
         if k in terms:
+            steps = fraction_steps(terms[k], power.size.bit_length())
+            budget.spend(len(power.values) * steps)
             parts.append((terms[k], power))
     return combined(parts)
 
@@ -39,10 +42,10 @@ def residuals(claim: Claim) -> Row:
     places = claim.torus[0].places + GUARD
     fine = [shifted(x, places) for x in claim.torus]
     terms = {1: Fraction(1), **claim.couplings}
-    pushed = forces([polynomial(r, terms) for r in stretches(fine)])
+    pushed = forces([polynomial(r, terms, claim.budget) for r in stretches(fine)])
     norms = []
     for x, force in zip(fine, pushed, strict=True):
-        moved = turned(x, claim.omega, Fraction(0), 2)
+        moved = turned(x, claim.omega, Fraction(0), 2, claim.budget)
         norms.append(combined([(-1, moved), (-1, force)]).norm)
     return norms
 

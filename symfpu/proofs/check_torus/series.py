@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
+from symfpu.proofs.check_torus.budget import PLACE, Budget, fraction_steps, packed_steps
 from symfpu.proofs.reading import need
 from symfpu.proofs.rounding import up
 
@@ -66,9 +67,13 @@ def derivative(series: Series, m: int) -> Series:
     return series._replace(values={nu: nu[m] * x for nu, x in series.values.items()})
 
 
-def turned(series: Series, omega: Row, rate: Fraction, power: int) -> Series:
+def turned(
+    series: Series, omega: Row, rate: Fraction, power: int, budget: Budget
+) -> Series:
     """(rate + nu.omega)^power a[nu], rounded down; of series without error."""
     need(not series.error, "a derivative of an error has no bound")
+    steps = sum(fraction_steps(w, series.size.bit_length()) for w in (rate, *omega))
+    budget.spend(len(series.values) * power * len(omega) * steps)
     values = {}
     for nu, x in series.values.items():
         factor = (rate + sum(n * w for n, w in zip(nu, omega, strict=True))) ** power
@@ -82,14 +87,34 @@ def mirrored(series: Series, sign: int) -> Series:
     return series._replace(values=values)
 
 
-def product(a: Series, b: Series) -> Series:
+def product(a: Series, b: Series, budget: Budget) -> Series:
     """With the places of both, exact products rounded once."""
     if not a.values or not b.values:
         return Series({}, a.places, up(Fraction(a.size * b.size, 1 << a.places)))
-    packing = Packing([a, b], 1)
-    values = packing.unpacked(packing.packed(a) * packing.packed(b))
+    values = exact_product(a, b, budget)
     error = a.size * b.error + (b.size - b.error) * a.error
     return shifted(Series(values, a.places + b.places, error), a.places)
+
+
+def exact_product(a: Series, b: Series, budget: Budget) -> dict[Harmonic, int]:
+    """Coefficients of the product of values, by the shorter of two ways."""
+    packing = Packing([a, b], 1)
+    pairs = float(PLACE * len(a.values) * len(b.values))
+    budget.spend(min(pairs, packing.steps))
+    if pairs < packing.steps:
+        return by_pairs(a, b)
+    packing.check_places()
+    return packing.unpacked(packing.packed(a) * packing.packed(b))
+
+
+def by_pairs(a: Series, b: Series) -> dict[Harmonic, int]:
+    """The same of few harmonics in a large box: every pair of them."""
+    found: dict[Harmonic, int] = {}
+    for nu, x in a.values.items():
+        for mu, y in b.values.items():
+            at = tuple(map(int.__add__, nu, mu))
+            found[at] = found.get(at, 0) + x * y
+    return found
 
 
 class Packing:
@@ -104,10 +129,14 @@ class Packing:
         highest = [max(map(abs, column)) for column in zip(*harmonics, strict=True)]
         self.lengths = [4 * m + 1 for m in highest]
         self.count = math.prod(self.lengths)
-        need(self.count <= MOST_PLACES, "a product has too many harmonics")
         self.highest = highest
         largest = max(series.size for series in every)
         self.width = (2 * largest.bit_length() + terms.bit_length() + 2) // 8 + 1
+        self.steps = packed_steps(self.count, 8 * self.width)
+
+    def check_places(self) -> None:
+        """The box fits into memory."""
+        need(self.count <= MOST_PLACES, "a product has too many harmonics")
 
     def packed(self, series: Series) -> int:
         """Sum of x 2^(8 width place), the place of -highest being 0."""

@@ -5,8 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from symfpu.chain.potentials.expressions import sizes
 from symfpu.chain.potentials.expressions.text import parsed, stretch
 
+DEEPEST = (
+    3  # functions within each other: nested ones are no such sum, and long in exponentials
+)
 MOST = 4  # more of them cost more than powers do at common orders
 
 
@@ -25,6 +29,8 @@ def parts_of_tension(formula: str) -> tuple[Part, ...]:
     """
     import sympy
 
+    if sizes.depth(parsed(formula)) > DEEPEST:
+        return ()
     tension = sympy.diff(parsed(formula), stretch())
     # expanded before the brackets of powers are
     terms = sympy.expand_mul(tension.rewrite(sympy.exp))

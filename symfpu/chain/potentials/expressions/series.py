@@ -25,6 +25,8 @@ SPARE_TERMS = (
 )
 SPARE_BITS = 64
 FINEST = 8  # times the asked digits: what is zero to so many is zero
+LARGEST_BALL = flint.arb(2) ** 100_000
+SIZES = "V whose Taylor coefficients are of size 1e-30000 to 1e30000, or zero"
 ANALYTIC = "an expression that is analytic and real at r = 0"
 Series = Any
 
@@ -222,9 +224,16 @@ def rounded_tension(text: str, terms: int, digits: int) -> tuple[Fraction, ...]:
             balls = [flint.arb(c) for c in found]
             if not all(ball.is_finite() for ball in balls):
                 raise refused(text, ANALYTIC)
+            if not all(abs(ball) < LARGEST_BALL and _is_seen(ball) for ball in balls):
+                raise refused(text, SIZES, "take another unit of length")
             if bits >= finest or all(_known(ball, digits) for ball in balls):
                 return tuple(_rounded(ball, digits) for ball in balls)
         bits *= 2
+
+
+def _is_seen(ball: Any) -> bool:
+    """Zero or not too small: its exact number is not longer than it need be."""
+    return bool(ball.contains(0) or abs(ball) > 1 / LARGEST_BALL)
 
 
 def _known(ball: Any, digits: int) -> bool:

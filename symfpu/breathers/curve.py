@@ -1,0 +1,352 @@
+"""Points of a curve of periodic orbits in the space of all their coefficients, and steps on it.
+
+The equations of harmonic balance leave one direction free, the tangent. Lengths are those of
+the coefficients; sigma has none, as it follows from them. Two points lie on one smooth piece of a
+curve if the whole solutions agree with the cubic through both and their tangents, and if the
+index is the same: the number of negative eigenvalues of the second variation of the action at
+fixed frequency, bordered by the action's own gradient. It changes where an orbit is degenerate,
+at a fold of the action or where another family crosses, and on a curve that turns away before a
+crossing it does not. So a step across a resonance is told from one on the curve by an integer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from symfpu.breathers.equations import (
+    LARGEST_SYSTEM,
+    ROUNDING_STEP,
+    STEP,
+    TAIL,
+    Balance,
+    relative_heights,
+)
+from symfpu.errors import SymfpuError
+
+Floats = NDArray[np.float64]
+Along = Callable[[Floats, Floats], float]
+# corrections of a prediction, new linearisations for them, and a correction relative to the size;
+# a prediction that needs more is too far away
+MOST_CORRECTIONS, MOST_LINEARISATIONS, LARGEST_CORRECTION = 40, 4, 1.0
+SLOW = 0.1  # of the correction before: one that is larger asks for a new linearisation
+NEARLY_THERE = 1e-4  # a correction after which a linearisation is that of the orbit
+DETUNING = 1e-2  # weight of a relative correction of sigma, whose rounding is larger
+LEAST_MOST, PER_BOND = (
+    128,
+    8,
+)  # harmonics that are taken, at most: a number, or so many a bond
+ANGLE = 0.3  # between tangents, in radians, from one point to the next
+NEAR = 0.1  # of a step: how far the point may be from the cubic's chord rule
+COMPARED = 1e-3  # of the largest coefficient: smaller ones are not compared one by one
+COEFFICIENT = 0.25  # relative misfit of one coefficient
+
+
+class NotOnTheCurve(SymfpuError):
+    """A point that a step found does not continue the curve. Ours.
+
+    point : what was found, or None. reason : why it is refused. crossing : whether the whole
+    solutions agree and the index alone has changed, by one. unresolved : whether it has more
+    harmonics than are taken.
+    """
+
+    def __init__(
+        self,
+        reason: str,
+        point: Point | None,
+        *,
+        crossing: bool = False,
+        unresolved: bool = False,
+    ) -> None:
+        self.reason, self.point = reason, point
+        self.crossing, self.unresolved = crossing, unresolved
+        super().__init__(reason)
+
+
+class Linearisation:
+    """The second variation of the action at fixed frequency, with the action's gradient, factored.
+
+    tangent : of the curve through z, of length 1 in the coefficients, the action rising. index :
+    its negative eigenvalues.
+    """
+
+    def __init__(self, balance: Balance, z: Floats) -> None:
+        from scipy.linalg import lapack
+
+        _, jacobian = balance.system(z)
+        last = len(balance.n)
+        # norms of the cosines: the mean counts twice
+        self._weights = np.where(balance.n == 0, 2.0, 1.0)
+        matrix = np.zeros((last + 1, last + 1), order="F")
+        matrix[:last, :last] = self._weights[:, None] * jacobian[:, :-1]
+        matrix[last, :last] = balance.n**2 * z[:-1]
+        work, _ = lapack.dsytrf_lwork(last + 1, lower=1)
+        self._factors, self._pivots, info = lapack.dsytrf(
+            matrix, lower=1, lwork=int(work), overwrite_a=1
+        )
+        if info > 0:
+            raise NotOnTheCurve("the tangent is not determined", None)
+        self.index = self._negative()
+        self.tangent = self.solve(np.append(np.zeros(last), 1.0))
+        self.tangent /= np.linalg.norm(self.tangent[:-1])
+
+    def solve(self, right: Floats) -> Floats:
+        """The solution for one right-hand side or several, in columns."""
+        from scipy.linalg import lapack
+
+        solution, _ = lapack.dsytrs(self._factors, self._pivots, right, lower=1)
+        return np.asarray(solution)
+
+    def _particular(self, equations: Floats) -> Floats:
+        return self.solve(np.append(self._weights * equations, 0.0))
+
+    def across(self, equations: Floats) -> Floats:
+        """The change of z by which the equations have these values, across the tangent."""
+        x = self._particular(equations)
+        return np.asarray(x - self.tangent * (self.tangent[:-1] @ x[:-1]))
+
+    def holding(self, place: int, equations: Floats) -> Floats:
+        """The same without a change of one coefficient."""
+        x = self._particular(equations)
+        return np.asarray(x - self.tangent * (x[place] / self.tangent[place]))
+
+    def _negative(self) -> int:
+        """Negative eigenvalues, from the blocks of one and two on the diagonal of the factors."""
+        diagonal = self._factors.diagonal()
+        single = self._pivots > 0
+        firsts = np.flatnonzero(~single)[::2]
+        a, c = diagonal[firsts], diagonal[firsts + 1]
+        beside = self._factors[firsts + 1, firsts]
+        of_pairs = np.where(a * c < beside**2, 1, np.where(a < 0, 2, 0))
+        return int((diagonal[single] < 0).sum() + of_pairs.sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """One orbit of a curve: z of a balance, and the derivative of z by the length of the curve.
+
+    index : of its linearisation, which is kept while steps start from it. iterations : corrections
+    that led to it.
+    """
+
+    balance: Balance
+    z: Floats
+    tangent: Floats
+    index: int
+    iterations: int
+    linear: Linearisation | None
+
+    @property
+    def amplitude(self) -> float:
+        """A of the seed."""
+        return float(self.z[self.balance.first])
+
+    @property
+    def size(self) -> float:
+        """The largest coefficient."""
+        return float(np.max(np.abs(self.z[:-1])))
+
+    @cached_property
+    def cosines(self) -> Floats:
+        """Coefficients, harmonic 0 first, shape (H+1, N-1)."""
+        return self.balance.cosines(self.z)
+
+    @property
+    def rise(self) -> float:
+        """Of sum n^2 c^2, twice the action over the frequency, along the tangent."""
+        return float((self.balance.n**2 * self.z[:-1]) @ self.tangent[:-1])
+
+    def linearised(self) -> Linearisation:
+        """Its linearisation, anew if it is not kept."""
+        return self.linear or Linearisation(self.balance, self.z)
+
+
+def point_at(
+    balance: Balance,
+    z: Floats,
+    towards: Floats,
+    iterations: int = 0,
+    linear: Linearisation | None = None,
+) -> Point:
+    """The orbit z as a point whose tangent goes along with `towards`.
+
+    linear : its linearisation, if it is known.
+    """
+    linear = linear or Linearisation(balance, z)
+    forward = linear.tangent[:-1] @ towards[:-1] >= 0
+    tangent = linear.tangent if forward else -linear.tangent
+    return Point(balance, z, tangent, linear.index, iterations, linear)
+
+
+def corrected(
+    balance: Balance,
+    z: Floats,
+    linear: Linearisation,
+    along: Along | None = None,
+) -> tuple[Floats, int, Linearisation]:
+    """The orbit near z, across the tangent, or where a condition is met.
+
+    along : how far along the tangent it is met, by z and the tangent. With the number of
+    corrections, and the last linearisation. Raises NotOnTheCurve.
+    """
+
+    def step(linear: Linearisation, z: Floats) -> Floats:
+        change = linear.across(balance.equations(z))
+        if along is None:
+            return change
+        return np.asarray(change - along(z - change, linear.tangent) * linear.tangent)
+
+    return settled(balance, z, linear, step)
+
+
+def settled(
+    balance: Balance,
+    guess: Floats,
+    linear: Linearisation,
+    step: Callable[[Linearisation, Floats], Floats],
+) -> tuple[Floats, int, Linearisation]:
+    """What corrections of a guess lead to, as `corrected` gives it.
+
+    One linearisation serves as long as the corrections shrink fast. The first one that does not
+    serve is replaced by that at the guess, others by that at z.
+    """
+    z, size = guess, float(np.max(np.abs(guess[:-1])))
+    before, made, near = np.inf, 0, False
+    for count in range(1, MOST_CORRECTIONS + 1):
+        change = step(linear, z)
+        z = z - change
+        moved = float(np.max(np.abs(change[:-1]))) / size
+        relative = max(moved, DETUNING * _relative(float(change[-1]), float(z[-1])))
+        if relative <= STEP:
+            return z, count, linear
+        grows = not relative < LARGEST_CORRECTION
+        if grows and made:
+            raise NotOnTheCurve("the corrections grow", None)
+        if grows or relative > SLOW * before:
+            if near and relative < ROUNDING_STEP:  # nothing is left but rounding
+                return z, count, linear
+            if (made := made + 1) > MOST_LINEARISATIONS:
+                break
+            near = relative < NEARLY_THERE
+            z = z if near or made > 1 else guess
+            linear, relative = Linearisation(balance, z), np.inf
+        before = relative
+    raise NotOnTheCurve("the corrections do not converge", None)
+
+
+def _relative(change: float, value: float) -> float:
+    """Of a change to a value that may be rounding."""
+    return abs(change) / max(abs(value), float(np.finfo(float).eps))
+
+
+def with_harmonics(point: Point, harmonics: int) -> Point:
+    """The same orbit with more harmonics."""
+    chain, seed = point.balance.chain, point.balance.seed
+    balance = Balance(chain, seed, harmonics)
+    towards = balance.vector(point.balance.cosines(point.tangent), point.tangent[-1])
+    z = balance.vector(point.cosines, float(point.z[-1]))
+    linear = Linearisation(balance, z)
+    z, steps, linear = corrected(balance, z, linear)
+    return point_at(balance, z, towards, point.iterations + steps, linear)
+
+
+def resolved(point: Point) -> bool:
+    """Whether the last harmonics are as small as rounding."""
+    heights = relative_heights(point.cosines)
+    return bool(np.max(heights[-max(2, point.balance.harmonics // 8) :]) <= TAIL)
+
+
+def more_harmonics(point: Point) -> int:
+    """As many as their fall asks for; NotOnTheCurve where these are too many."""
+    balance, heights = point.balance, relative_heights(point.cosines)
+    known = balance.harmonics
+    ends = [
+        max(float(heights[k : k + 2].max()), TAIL / 10) for k in (known // 2, known - 1)
+    ]
+    fall = np.log(ends[0] / ends[1]) / (known - 1 - known // 2)
+    missing = np.log(10 * ends[1] / TAIL) / fall if fall > 0 else known
+    harmonics = known + int(np.clip(1.2 * missing, max(4, known // 5), known))
+    N = balance.chain.N
+    most = min(max(LEAST_MOST, PER_BOND * N), 2 * LARGEST_SYSTEM // (N - 1))
+    if known >= most:
+        still = f"the last of {known} harmonics is still {heights[-2:].max():.1g}"
+        raise NotOnTheCurve(f"{still} of the largest", point, unresolved=True)
+    return min(harmonics, most)
+
+
+def step_from(
+    start: Point, length: float, bend: Floats, widen: Callable[[Point, int], Point]
+) -> tuple[Point, Point]:
+    """The point at this length along the curve, and the start with as many harmonics.
+
+    bend : half of the second derivative by the length, of the balance of the start. widen : gives
+    the start with more harmonics. Raises NotOnTheCurve.
+    """
+    while True:
+        balance = start.balance
+        guess = start.z + length * start.tangent + length**2 * bend
+        z, steps, _ = corrected(balance, guess, start.linearised())
+        if balance.frequency(z) <= 0:
+            raise NotOnTheCurve("the frequency falls to zero", None)
+        found = point_at(balance, z, start.tangent, steps)
+        if resolved(found):
+            return found, start
+        start = widen(start, more_harmonics(found))
+        bend = start.balance.vector(balance.cosines(bend), bend[-1])
+
+
+def require_agreement(start: Point, found: Point) -> None:
+    """NotOnTheCurve unless both points lie on one smooth piece of a curve.
+
+    Both have as many harmonics.
+    """
+    if reason := disagreement(start, found):
+        raise NotOnTheCurve(reason, found)
+    change, turned = found.index - start.index, start.rise * found.rise < 0
+    if abs(change) != int(turned):
+        reason = f"the index goes from {start.index} to {found.index}"
+        crossing = abs(change) == 1
+        raise NotOnTheCurve(reason, found, crossing=crossing)
+
+
+def disagreement(start: Point, found: Point) -> str:
+    """What of two whole solutions does not fit the cubic through both; empty if all does."""
+
+    def name(place: int) -> str:
+        n, q = int(start.balance.n[place]), int(start.balance.q[place]) + 1
+        return f"harmonic {n} of mode {q}"
+
+    return unlike(
+        (start.z[:-1], start.tangent[:-1]), (found.z[:-1], found.tangent[:-1]), name
+    )
+
+
+def unlike(
+    start: tuple[Floats, Floats],
+    found: tuple[Floats, Floats],
+    name: Callable[[int], str],
+) -> str:
+    """What of two solutions does not fit the cubic through both; empty if all does.
+
+    start, found : their coefficients and tangents of length 1, (n,) each, the same unknowns.
+    name : of the coefficient at a place. It holds for orbits and tori alike.
+    """
+    (here, before), (there, after) = start, found
+    cosine = float(before @ after)
+    if cosine < np.cos(ANGLE):
+        return f"the tangent turns by {np.arccos(np.clip(cosine, -1, 1)):.2g}"
+    moved = there - here
+    gone = 2 * float(moved @ (before + after)) / float((before + after) @ (before + after))
+    misfit = np.abs(moved - gone * (before + after) / 2)
+    if float(np.linalg.norm(misfit)) > NEAR * abs(gone):
+        part = float(np.linalg.norm(misfit)) / max(abs(gone), np.finfo(float).tiny)
+        return f"the point found is {part:.2g} steps off"
+    sizes = np.maximum(np.abs(here), np.abs(there))
+    compared = np.where(sizes > COMPARED * sizes.max(), sizes, np.inf)
+    if float(np.max(misfit / compared)) > COEFFICIENT:
+        return f"{name(int(np.argmax(misfit / compared)))} does not fit"
+    return ""

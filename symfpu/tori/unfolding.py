@@ -1,0 +1,45 @@
+"""Solutions with fixed ends as standing waves of a ring of twice the length, and back."""
+
+from __future__ import annotations
+
+from symfpu.chain.chain import Chain
+from symfpu.numbers.public import public
+from symfpu.tori.columns import half_of
+from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, require_fixed_solution
+
+
+@public
+def unfold(solution: QuasiPeriodic) -> FourierTorus:
+    """A solution with fixed ends as the odd solution of the ring of twice the length.
+
+    solution : any torus or breather of a chain of N bonds; dimensionless. x_0 = x_N = 0 stay at
+        rest, x_(2N-j) = -x_j. Its modes are standing waves of the modes q and -q of the ring,
+        whose energies are those of the chain. Ours. Raises InputError.
+
+    >>> from symfpu import breather_at_amplitude
+    >>> unfold(breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4"))
+    FourierTorus(N=16, alpha=0.3, ends='periodic', omega_1=..., A_1=0.4, ... harmonics)
+    """
+    require_fixed_solution(solution, "solution")
+    fixed = solution.chain
+    ring = Chain(2 * fixed.N, potential=fixed.potential, ends="periodic")
+    return _on(ring, solution)
+
+
+def folded(torus: QuasiPeriodic) -> FourierTorus:
+    """The torus with fixed ends that standing waves of a ring unfold, in doubles."""
+    return _on(half_of(torus.chain), torus.in_doubles())
+
+
+def _on(chain: Chain, torus: QuasiPeriodic) -> FourierTorus:
+    """The same coefficients of another chain."""
+    return FourierTorus(
+        chain,
+        torus.seeds,
+        torus.frequencies,
+        torus.harmonics,
+        torus.cosines,
+        torus.phases,
+        torus.digits,
+        warnings=torus.warnings,
+    )

@@ -1,0 +1,95 @@
+"""Tori and breathers from a choice of amplitudes, energy or frequencies, and by Newton's method; of rings, too."""
+
+from functools import cache
+
+import numpy as np
+
+import symfpu
+from symfpu import Chain, lindstedt, refine, refine_at_energy, solve_amplitudes, torus_at_amplitudes, torus_at_energy
+from tests.fingerprint.cases import case
+from tests.fingerprint.entries import solver
+
+ALPHA = Chain(8, alpha="0.3")
+BREATHERS = {
+    "alpha": (ALPHA, 1, "0.3"),
+    "beta, N odd": (Chain(9, beta=1), 2, "0.3"),
+    "both": (Chain(8, alpha="0.4", beta="0.1"), 3, "0.3"),
+    "one particle": (Chain(2, beta=1), 1, "0.5"),
+    "toda": (Chain(7, potential="toda:1/2"), 3, "0.2"),
+    "cosh": (Chain(6, potential=symfpu.from_expression("cosh(r) - 1")), 5, "0.4"),
+    "high mode": (Chain(32, alpha="0.33"), 25, "0.1"),
+}
+
+
+@cache
+def breather(name):
+    return symfpu.breather_at_amplitude(*BREATHERS[name])
+
+
+@cache
+def pair():
+    return torus_at_amplitudes(ALPHA, {1: "0.2", 2: "0.1"}, 6)
+
+
+def motion(solution):
+    modes = not solution.chain.periodic  # of a ring the particles
+    yield "positions", solver((solution.Q if modes else solution.x)([0.4, 1.7]))
+    yield "momenta", solver((solution.P if modes else solution.p)([0.4, 1.7]))
+    yield "spectrum", solver(solution.average_spectrum())
+
+
+def told(name, solution):
+    yield name, solution.record()
+    for what, value in motion(solution):
+        yield f"{name}, {what}", value
+
+
+@case
+def by_wish():
+    yield from told("at amplitudes", pair())
+    yield from told("at amplitudes, digits", torus_at_amplitudes(ALPHA, {1: "0.2"}, 6, digits=25))
+    yield from told("at energy", torus_at_energy(Chain(16, alpha="0.33"), (1, 2), "0.001", order=8))
+    yield from told("at energy, shared", torus_at_energy(Chain(9, beta=1), (1, 3), "0.01", order=4, energy_ratio={1: 2, 3: 1}))
+    yield from told("at harmonic energy", torus_at_energy(Chain(7, potential="morse:1/3"), (2,), "0.01", order=5, harmonic=True))
+    yield from told("three seeds", torus_at_amplitudes(Chain(9, alpha="0.3"), {1: "0.1", 2: "0.1", 3: "0.05"}, 3))
+
+
+@case
+def by_newton():
+    yield from told("at frequencies", refine(pair()))
+    yield from told("at amplitudes", symfpu.refine_at_amplitudes(pair(), {1: "0.25", 2: "0.1"}))
+    yield from told("at energy", refine_at_energy(pair(), "0.02", harmonic=False))
+    yield from told("at energy, shared", refine_at_energy(pair(), "0.02", harmonic=True, energy_ratio={1: 1, 2: 1}))
+    yield from told("at a start", symfpu.refine_at_start(pair(), {1: "0.21", 2: "0.09"}))
+    yield from told("digits", refine(torus_at_amplitudes(Chain(4, alpha="0.3"), {1: "0.2", 2: "0.1"}, order=4), digits=30))
+    figure = symfpu.solve_amplitudes(symfpu.lindstedt(Chain(16, alpha="0.33"), (1, 2), ("0.19626", "0.39046"), 8))
+    yield from told("Fig. 1", refine(figure))
+
+
+@case
+def breathers():
+    for name in BREATHERS:
+        yield from told(name, breather(name))
+    yield from told("at frequency", symfpu.periodic_orbit(ALPHA, 1, "0.3905"))
+    yield from told("at energy", symfpu.breather_at_energy(Chain(6, beta=1), 5, "0.5"))
+    yield from told("at harmonic energy", symfpu.breather_at_energy(ALPHA, 2, "0.01", harmonic=True))
+    yield from told("digits", symfpu.periodic_orbit_digits(breather("both"), 30))
+    yield from told("digits at amplitude", symfpu.periodic_orbit_digits(breather("alpha"), 25, amplitude="0.31"))
+    yield "law", symfpu.breather_law(Chain(32, alpha="0.33"), 1e-4)
+
+
+@case
+def rings():
+    chain = Chain(8, alpha="0.3", ends="periodic")
+    series = lindstedt(chain, (1,), ("0.766",), 6)
+    wave = solve_amplitudes(series)
+    yield from told("wave of a series", wave)
+    yield from told("wave by Newton", refine(wave))
+    yield from told("wave at amplitude", symfpu.refine_at_amplitudes(wave, {1: "0.15"}))
+    yield from told("two waves", solve_amplitudes(lindstedt(Chain(9, beta=1, ends="periodic"), (1, 2), ("0.6850", "1.2870"), 4)))
+    long = Chain(64, beta=1, ends="periodic")
+    yield from told("breather of a ring", symfpu.travelling_breather(long, 5, amplitude="0.8"))
+    yield from told("breather of a ring at energy", symfpu.travelling_breather(Chain(9, alpha="0.3", ends="periodic"), 2, energy="0.1"))
+    standing = symfpu.unfold(breather("alpha"))
+    yield from told("standing", standing)
+    yield "standing, mode coordinates", np.abs(standing.Q(0.0))

@@ -1,0 +1,55 @@
+"""Certificates as files, sealed with a digest that fits, altered at a place; and why a checker refuses one."""
+
+import copy
+import hashlib
+import json
+
+from symfpu.proofs.reading import CertificateError
+
+
+def sealed(data):
+    """With the digest of these contents: what is left to refuse is the mathematics."""
+    contents = {key: value for key, value in data.items() if key != "digest"}
+    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
+    return contents | {"digest": hashlib.sha256(text.encode()).hexdigest()}
+
+
+def reason(verify, data, folder):
+    """Why a certificate is refused; None where it is not."""
+    path = folder / "c.json"
+    path.write_text(json.dumps(data))
+    try:
+        verify(path)
+    except CertificateError as error:
+        return str(error)
+    return None
+
+
+def check_refused(verify, data, folder, why):
+    """For one of the reasons, which stand between bars."""
+    found = reason(verify, data, folder)
+    assert found
+    assert any(word in found for word in why.split("|")), found
+
+
+def places_of(value, place=()):
+    """The places of all numbers and texts in a certificate."""
+    if not isinstance(value, dict | list):
+        yield place
+        return
+    for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
+        yield from places_of(inner, (*place, key))
+
+
+def altered(data, place, change):
+    """A copy with what stands at a place changed by a function."""
+    other = copy.deepcopy(data)
+    inside = other
+    for key in place[:-1]:
+        inside = inside[key]
+    inside[place[-1]] = change(inside[place[-1]])
+    return other
+
+
+def moved(value):
+    return value + 1 if isinstance(value, int) else f"{value}1"
