@@ -312,11 +312,6 @@ NEWTON: dict[str, Door] = {
     "periodic_orbit": lambda c: symfpu.periodic_orbit(c.chain, 1, c.breather.frequency),
     "periodic_orbit_digits": lambda c: symfpu.periodic_orbit_digits(c.breather, 25),
     "refine": lambda c: c.refined,
-    "refine_at_amplitudes": lambda c: symfpu.refine_at_amplitudes(c.solution, c.amplitudes),
-    "refine_at_energy": lambda c: symfpu.refine_at_energy(
-        c.solution, c.solution.energy(), harmonic=False
-    ),
-    "refine_at_start": lambda c: symfpu.refine_at_start(c.solution, c.amplitudes),
     "travelling_breather": lambda c: c.wave,
     "twist": lambda c: symfpu.twist(c.periodic),
     "twist_at_rest": lambda c: symfpu.twist_at_rest(c.chain, SEEDS),

@@ -54,11 +54,8 @@ from symfpu.tori.verdict import assess as assess
 
 # tori by Newton's method
 from symfpu.refinement.digits import PreciseTorus as PreciseTorus
-from symfpu.refinement.through import refine_at_start as refine_at_start
 from symfpu.refinement.refined_torus import RefinedTorus as RefinedTorus
 from symfpu.refinement.tori import refine as refine
-from symfpu.refinement.tori import refine_at_amplitudes as refine_at_amplitudes
-from symfpu.refinement.tori import refine_at_energy as refine_at_energy
 from symfpu.refinement.travelling_breather import travelling_breather as travelling_breather
 
 # theorems about tori

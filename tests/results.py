@@ -44,7 +44,7 @@ def two_angles():
     """A refined torus of the smallest chain that has one."""
     amplitudes = {1: "0.2", 2: "0.1"}
     guess = symfpu.torus_at_amplitudes(Chain(3, alpha="0.3"), amplitudes, order=4)
-    return symfpu.refine_at_amplitudes(guess, amplitudes)
+    return symfpu.refine(guess, amplitudes=amplitudes)
 
 
 @cache

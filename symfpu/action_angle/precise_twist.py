@@ -136,8 +136,12 @@ class TwistProblem(Problem):
     def residual(self) -> Integers:
         return self.tangents.image(self.coefficients, self.frequencies)
 
-    def solve(self, residual: Floats) -> tuple[Floats, Floats]:
-        by_cosine, by_shift, _ = self.tangents.correction(residual, ACCURACY)
+    def conditions(self) -> Integers:
+        """None is left: the amplitudes are held."""
+        return np.zeros(len(self.frequencies), dtype=object)
+
+    def solve(self, residual: Floats, conditions: Floats) -> tuple[Floats, Floats]:
+        by_cosine, by_shift, _ = self.tangents.correction(residual, ACCURACY, conditions)
         by_cosine[self._seeds] = 0
         return by_cosine, by_shift
 

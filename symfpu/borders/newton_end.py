@@ -25,8 +25,7 @@ from symfpu.refinement.tori import (
     NoTorus,
     RefinedTorus,
     ended_early,
-    refine_at_amplitudes,
-    refine_at_energy,
+    refine,
 )
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 from symfpu.tori.torus import QTorus
@@ -166,7 +165,7 @@ def newton_end(
     FOLD and STABILITY, what is looked for on the way. confirm : whether the last torus is found
     with more harmonics, too.
 
-    Raises what `refine_at_energy` raises at the first of them.
+    Raises what `refine` raises at the first of them.
     """
     points: list[RefinedPoint] = []
     lost: dict[str, Loss] = {}
@@ -346,17 +345,16 @@ class _Tori:
     ) -> RefinedTorus:
         name, seeds = f"{place:.8g}", self.ray.seeds
         if self.ray.by == ENERGY:
-            return refine_at_energy(
+            return refine(
                 guess,
-                name,
-                harmonic=False,
+                energy=name,
                 energy_ratio=dict.fromkeys(seeds, 1),
                 tolerance=tolerance,
                 most_harmonics=most,
             )
         amplitudes = dict.fromkeys(seeds, name)
-        return refine_at_amplitudes(
-            guess, amplitudes, tolerance=tolerance, most_harmonics=most
+        return refine(
+            guess, amplitudes=amplitudes, tolerance=tolerance, most_harmonics=most
         )
 
 

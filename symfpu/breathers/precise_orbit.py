@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from symfpu.breathers.balance import (
+    PeriodicOrbit,
     as_periodic_orbit,
     breather_at_amplitude,
     periodic_orbit,
@@ -31,6 +32,7 @@ from symfpu.refinement.digits import (
     torus_to_digits,
 )
 from symfpu.refinement.iterative_refinement import Failure
+from symfpu.refinement.prescribed import Amplitudes, Frequencies, Prescribed
 from symfpu.tori.quasiperiodic import QuasiPeriodic
 
 MORE_ANGLES = "for tori of more angles call refine(torus, digits=...)"
@@ -78,22 +80,29 @@ def periodic_orbit_digits(
         both = (frequency, amplitude)
         raise InputError("frequency, amplitude", both, "one of them", "leave the other out")
     path = None if file is None else checkpoint_path(file)
-    held, start = None, orbit if isinstance(orbit, PreciseTorus) else near
+    start = orbit if isinstance(orbit, PreciseTorus) else near
     if amplitude is not None:
-        held = (exact(amplitude, "amplitude"),)
         start = near = breather_at_amplitude(near.chain, near.seed, amplitude, near.cosines)
     elif frequency is not None:
         start = near = periodic_orbit(near.chain, near.seed, frequency, near.cosines)
-    guess = guess_of(start, near.frequencies, held)._replace(phases=dict(orbit.phases))
+    prescribed = _prescribed(near, amplitude)
+    guess = guess_of(start, prescribed)._replace(phases=dict(orbit.phases))
     try:
         wanted = digits + CARRIED_DIGITS
         torus = torus_to_digits(guess, wanted, path, progress or unheard)
     except Failure as failure:
         balance = Balance(near.chain, near.seed, len(near.cosines) - 1)
         z = balance.vector(near.cosines, near.sigma)
-        advice = NEARER if held else _advice(balance, z)
+        advice = NEARER if amplitude is not None else _advice(balance, z)
         raise NoPeriodicOrbit(balance, str(failure), z, advice) from None
     return replace(torus, digits=digits)
+
+
+def _prescribed(near: PeriodicOrbit, amplitude: Number | None) -> Prescribed:
+    """The amplitude, if one was given, else the frequency of the orbit in doubles."""
+    if amplitude is not None:
+        return Amplitudes((exact(amplitude, "amplitude"),))
+    return Frequencies(near.chain, near.seeds, near.frequencies)
 
 
 def _advice(balance: Balance, z: Floats) -> str:

@@ -66,10 +66,10 @@ class ResidualProof(Tabled):
         theorem is about its coefficients rounded some 20 bits below the last digit.
     body : the certificate without its digest. Dimensionless. Ours: docs/tori-proofs.md.
 
-    >>> from symfpu import Chain, prove_residual, refine_at_amplitudes, torus_at_amplitudes
+    >>> from symfpu import Chain, prove_residual, refine, torus_at_amplitudes
     >>> amplitudes = {1: "0.2", 2: "0.1"}
     >>> guess = torus_at_amplitudes(Chain(N=4, alpha="0.3"), amplitudes, order=4)
-    >>> prove_residual(refine_at_amplitudes(guess, amplitudes, digits=30))
+    >>> prove_residual(refine(guess, amplitudes=amplitudes, digits=30))
     ResidualProof(N=4, alpha=0.3, omega_1=0.76..., omega_2=1.41..., 30 digits: residual below
     ... of every particle at all angles, H within ..., ... of the largest acceleration)
     """
@@ -154,10 +154,10 @@ def prove_residual(
     in integers with exact products, is above it at every angle (docs/tori-proofs.md; ours).
     Raises InputError for what is not such a torus.
 
-    >>> from symfpu import Chain, prove_residual, refine_at_amplitudes, torus_at_amplitudes
+    >>> from symfpu import Chain, prove_residual, refine, torus_at_amplitudes
     >>> amplitudes = {1: "0.2", 2: "0.1"}
     >>> guess = torus_at_amplitudes(Chain(N=3, beta=1), amplitudes, order=4)
-    >>> prove_residual(refine_at_amplitudes(guess, amplitudes, digits=40)).bound < 1e-38
+    >>> prove_residual(refine(guess, amplitudes=amplitudes, digits=40)).bound < 1e-38
     True
     """
     rounded = rounded_torus(torus)

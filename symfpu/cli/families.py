@@ -48,7 +48,7 @@ from symfpu.numbers.counted import counted
 from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.tori import refine, refine_at_amplitudes, refine_at_energy
+from symfpu.refinement.tori import refine
 from symfpu.reports.family import (
     family_table,
     family_text,
@@ -136,8 +136,8 @@ def refine_file(
     with progress_bar("Newton's method") as advance:
         refined: RefinedTorus | PreciseTorus
         if energy is not None:
-            refined = refine_at_energy(
-                torus, energy, harmonic=harmonic, progress=advance, **how
+            refined = refine(
+                torus, energy=energy, harmonic=harmonic, progress=advance, **how
             )
         else:
             given = ratio("amplitudes", amplitudes, torus.seeds)
@@ -171,7 +171,7 @@ def _found(
     if amplitudes is None:
         found = refine(torus, **how)
     else:
-        found = refine_at_amplitudes(torus, amplitudes, **how)
+        found = refine(torus, amplitudes=amplitudes, **how)
     return found
 
 

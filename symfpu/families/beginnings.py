@@ -22,7 +22,7 @@ from symfpu.numbers.arithmetic import text
 from symfpu.numbers.long_doubles import DIGITS
 from symfpu.refinement.conditions import Amplitude, Condition, ratio_conditions
 from symfpu.refinement.refined_torus import TOLERANCE, NoTorus, RefinedTorus, refined_torus
-from symfpu.refinement.tori import refine_at_amplitudes
+from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.short_waves import shifts_by_squares, short_waves
 from symfpu.tori.torus import QTorus
@@ -48,9 +48,7 @@ def first_torus(
     """
     guess = short_series(chain, amplitudes)
     if energy_ratio is None:
-        return refine_at_amplitudes(
-            guess, amplitudes, tolerance=tolerance, progress=progress
-        )
+        return refine(guess, amplitudes=amplitudes, tolerance=tolerance, progress=progress)
     first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
     conditions = [first, *ratio_conditions(tuple(amplitudes), energy_ratio, energies=True)]
     return refined_torus(guess, conditions, tolerance=tolerance, progress=progress)

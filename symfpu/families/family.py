@@ -28,7 +28,7 @@ from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, exact
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
 from symfpu.refinement.refined_torus import RefinedTorus, refined_torus
-from symfpu.refinement.tori import refine_at_energy
+from symfpu.refinement.tori import refine
 
 # in the order in which they are told, as one and as several
 KINDS_OF_EVENTS = {
@@ -148,7 +148,7 @@ def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Refine
 
     It keeps the ratio that the family keeps. A family by Appendix A keeps none: there the
     amplitudes have the ratio of the nearest member. Eq. eqmo; ours.
-    Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine_at_energy`
+    Raises InputError; NotInFamily beyond the range of the members; NoTorus as `refine`
     does.
 
     >>> from symfpu import Chain, family
@@ -166,8 +166,8 @@ def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Refine
         raise NotInFamily(level.name, value, (least, largest), found.ending)
     distances = np.abs(np.log(known / value))
     nearest = found.members[int(np.argmin(distances))].torus
-    return refine_at_energy(
-        nearest, energy, harmonic=harmonic, energy_ratio=found.energy_ratio
+    return refine(
+        nearest, energy=energy, harmonic=harmonic, energy_ratio=found.energy_ratio
     )
 
 

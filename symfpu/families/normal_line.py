@@ -15,7 +15,7 @@ from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import Between, followed_modes
 from symfpu.refinement.conditions import AmplitudeLine, Condition
 from symfpu.refinement.refined_torus import NoTorus, refined_torus
-from symfpu.refinement.tori import refine_at_amplitudes
+from symfpu.refinement.tori import refine
 from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
 from symfpu.tori.unfolding import folded, unfold
 
@@ -107,7 +107,7 @@ class Line:
         nearest = min(self._known, key=lambda p: abs(p - part))
         guess: Any = self._guess(part)
         try:
-            found: QuasiPeriodic = refine_at_amplitudes(guess, self.amplitudes(part))
+            found: QuasiPeriodic = refine(guess, amplitudes=self.amplitudes(part))
             return found
         except NoTorus:
             if not halvings:

@@ -185,7 +185,7 @@ class NormalModeProblem(TruncatedProblem):
         image = fixed.image(self._rows, self.coefficients, self.frequencies)
         return np.where(self.mask, image, 0)
 
-    def solve(self, residual: Floats) -> tuple[Floats, Floats]:
+    def solve(self, residual: Floats, conditions: Floats) -> tuple[Floats, Floats]:
         image = residual[0] if len(residual) == 1 else residual[0] + 1j * residual[1]
         by_p, by_sigma = self.jacobian(image)
         return self._parts(by_p), self._parts(np.asarray(by_sigma))
@@ -222,7 +222,8 @@ class NormalModeProblem(TruncatedProblem):
         size = self.stage.flow.frequency(self.mode.mode) ** 2
         largest = self.largest << CHECK_BITS
         return Truncation(
-            newton_update=self.size(self.update(image[:, rows])) / 2**CHECK_BITS,
+            newton_update=self.size(self.update(image[:, rows], self.conditions()))
+            / 2**CHECK_BITS,
             harmonics=finer.harmonics[out],
             neglected=neglected(left_out, divisors, finer.bits, largest),
             residual=mpmath.ldexp(total, -finer.bits) / size,

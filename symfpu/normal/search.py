@@ -92,10 +92,10 @@ def normal_modes(
     in `missing`. Raises InputError, and NoNormalModes for such a mode that `modes` names, or if
     there is no other.
 
-    >>> from symfpu import Chain, refine_at_amplitudes, torus_at_amplitudes
+    >>> from symfpu import Chain, refine, torus_at_amplitudes
     >>> amplitudes = {1: "0.2", 2: "0.1"}
     >>> guess = torus_at_amplitudes(Chain(N=4, alpha="0.3"), amplitudes, order=4)
-    >>> round(normal_modes(refine_at_amplitudes(guess, amplitudes)).frequencies[3], 9)
+    >>> round(normal_modes(refine(guess, amplitudes=amplitudes)).frequencies[3], 9)
     1.847...
     """
     torus = checked_solution(solution)

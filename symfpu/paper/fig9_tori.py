@@ -4,8 +4,8 @@ Newton's method with an angle more each time, through the coordinates of the see
 is left in the other modes says how far the trajectory is from so many frequencies.
 
 That of five angles takes minutes, so it is a file here. It was found as docs/dynamics.md says ("Up
-to seven angles"), from sixteen lines a mode of the trajectory to t = 1e6, by `refine_at_amplitudes`
-and `refine_at_start` with 6000 harmonics, and again with the 2500 largest of them.
+to seven angles"), from sixteen lines a mode of the trajectory to t = 1e6, by `refine` at given
+amplitudes, then at a given start, with 6000 harmonics and again with the 2500 largest of them.
 """
 
 from __future__ import annotations
@@ -25,8 +25,7 @@ from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.numbers.typed import Number
 from symfpu.paper.claims import Claim, judged
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.through import refine_at_start
-from symfpu.refinement.tori import refine_at_amplitudes
+from symfpu.refinement.tori import refine
 from symfpu.saved.results import load
 from symfpu.spectral.analysis import frequency_analysis
 from symfpu.spectral.near import torus_near
@@ -75,8 +74,8 @@ def approach(
         progress(f"fig9: torus of {s} angles", NO_FRACTION)
         guess = _at_rest(torus_near(lines, range(1, s + 1)))
         coordinates = {q: float(start[q - 1]) for q in guess.seeds}
-        near = refine_at_amplitudes(guess, guess.amplitudes, most_harmonics=MOST)
-        torus = refine_at_start(near, coordinates, most_harmonics=MOST)
+        near = refine(guess, amplitudes=guess.amplitudes, most_harmonics=MOST)
+        torus = refine(near, start=coordinates, most_harmonics=MOST)
         off = distance_from(torus, start)
         found.append((s, off, torus.residual(), len(torus.harmonics)))
     return Approach(*zip(*found, strict=True))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import exact
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.tori import refine_at_amplitudes
+from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, amplitude_history
@@ -273,4 +273,4 @@ def _scaled(torus: RefinedTorus, scale: float) -> RefinedTorus:
         torus.chain, torus.seeds, tuple(rates), torus.harmonics, cosines, torus.phases
     )
     amplitudes = {q: a * scale for q, a in torus.amplitudes.items()}
-    return refine_at_amplitudes(guess, amplitudes)
+    return refine(guess, amplitudes=amplitudes)

@@ -23,7 +23,7 @@ from symfpu.integrable.torus import toda_torus
 from symfpu.paper.printed import TWO_TORUS, PrintedTorus
 from symfpu.paper.starts import AMPLITUDE_ORDERS, printed_row
 from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.refinement.tori import refine, refine_at_amplitudes
+from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 
@@ -103,9 +103,7 @@ def torus_study(row: PrintedTorus) -> TorusStudy:
     tolerance = TOLERANCES[row.label]
     alpha, same_frequencies = (_refined(row, c, tolerance) for c in (row.chain, chain))
     amplitudes = {q: f"{a:.{AMPLITUDE_PLACES}f}" for q, a in alpha.amplitudes.items()}
-    same_amplitudes = refine_at_amplitudes(
-        same_frequencies, amplitudes, tolerance=tolerance
-    )
+    same_amplitudes = refine(same_frequencies, amplitudes=amplitudes, tolerance=tolerance)
     exact = toda_torus(chain, row.seeds, frequencies=row.frequencies, digits=EXACT_DIGITS)
     gaps = {
         "alpha": gaps_over(alpha),

@@ -9,7 +9,6 @@ harmonics of a box a quarter larger says which are missing.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -30,9 +29,8 @@ from symfpu.numbers.arithmetic import (
     from_integers,
     mpf,
 )
-from symfpu.numbers.long_doubles import long
 from symfpu.numbers.typed import integer
-from symfpu.refinement.conditions import Amplitude, Condition, FrequencyShift
+from symfpu.refinement.guesses import frequency_shifts
 from symfpu.refinement.harmonics import within_reach
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.iterative_refinement import (
@@ -48,6 +46,7 @@ from symfpu.refinement.iterative_refinement import (
 from symfpu.refinement.kronecker import Box, Integers, KroneckerForce
 from symfpu.refinement.lattice import Floats, Ints, canonical_signs, places_of
 from symfpu.refinement.newton import Correction
+from symfpu.refinement.prescribed import Prescribed
 from symfpu.refinement.refinement_file import Keep, Reached, RefinementFile, no_file
 from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, show
 
@@ -70,7 +69,7 @@ NO_TERMS = "refine it in doubles, or take the polynomial of its first coefficien
 class PreciseTorus(FourierTorus):
     """A torus with many digits, of any number of angles; dimensionless, phases in radians.
 
-    Made by `refine` and `refine_at_amplitudes` with `digits`. Ours: the paper has series alone.
+    Made by `refine` with `digits`. Ours: the paper has series alone.
 
     chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
     harmonics : the nu, shape (H, s). cosines : c_q[nu] as mpf, shape (H, N-1), on a ring (H, 1) and
@@ -111,17 +110,17 @@ class PreciseTorus(FourierTorus):
 
 
 class Guess(NamedTuple):
-    """Where refinement begins: coefficients by harmonic (C,), and what is held.
+    """Where refinement begins: coefficients by harmonic (C,), and what fixes the torus.
 
-    frequencies : exact; found anew where amplitudes are given. amplitudes : None, or of the seeds.
-    phases : of the result. digits : of the coefficients, None for doubles. steps : made so far.
+    frequencies : exact; found anew where other numbers are prescribed. phases : of the result.
+    digits : of the coefficients, None for doubles. steps : made so far.
     """
 
     chain: Chain
     seeds: tuple[int, ...]
     coefficients: dict[tuple[int, ...], Any]
     frequencies: tuple[Fraction, ...]
-    amplitudes: tuple[Fraction, ...] | None
+    prescribed: Prescribed
     phases: dict[int, Any]
     digits: int | None
     steps: int = 0
@@ -140,19 +139,16 @@ def require_digits(chain: Chain, digits: int, argument: str) -> None:
         raise InputError(argument, f"one of {chain!r}", allowed, NO_TERMS)
 
 
-def guess_of(
-    torus: QuasiPeriodic,
-    frequencies: tuple[Fraction, ...],
-    amplitudes: tuple[Fraction, ...] | None,
-) -> Guess:
+def guess_of(torus: QuasiPeriodic, prescribed: Prescribed) -> Guess:
     """A torus in doubles or in digits as where refinement begins."""
     rows = {}
     for nu, row in zip(torus.harmonics.tolist(), torus.cosines, strict=True):
         sign = -1 if next((n for n in nu if n), 1) < 0 else 1
         rows[tuple(sign * n for n in nu)] = row
     phases = dict(torus.phases)
+    frequencies = prescribed.held_frequencies or tuple(torus.frequencies)
     return Guess(
-        torus.chain, torus.seeds, rows, frequencies, amplitudes, phases, torus.digits
+        torus.chain, torus.seeds, rows, frequencies, prescribed, phases, torus.digits
     )
 
 
@@ -161,9 +157,8 @@ def resumed(guess: Guess, reached: Reached) -> Guess:
     with mpmath.workprec(reached.bits + GUARD_BITS):
         table = from_integers(reached.coefficients, np.asarray(-reached.bits))
         rows = map(tuple, reached.harmonics.tolist())
-        frequencies = guess.frequencies
-        if guess.amplitudes is not None:
-            frequencies = _rational(reached.omega, reached.bits)
+        found = _rational(reached.omega, reached.bits)
+        frequencies = guess.prescribed.held_frequencies or found
         return guess._replace(
             coefficients=dict(zip(rows, table, strict=True)),
             frequencies=frequencies,
@@ -186,15 +181,8 @@ def torus_to_digits(
     if path is None:
         return precise_torus(guess, digits, tell)
     with one_run(path):
-        by_amplitude = guess.amplitudes is not None
-        kept = RefinementFile(
-            path,
-            guess.chain,
-            digits,
-            seeds=guess.seeds,
-            frequencies=None if by_amplitude else guess.frequencies,
-            amplitudes=guess.amplitudes,
-        )
+        held = guess.prescribed.by_name()
+        kept = RefinementFile(path, guess.chain, digits, guess.seeds, held)
         before = kept.read()
         start = guess if before is None else resumed(guess, before)
         return precise_torus(start, digits, tell, kept.write)
@@ -297,8 +285,9 @@ class TorusProblem(TruncatedProblem):
         frequencies = [fixed(w) for w in guess.frequencies]
         self.frequencies = np.array(frequencies, dtype=object)
         self.frequency_scale = min(float(w) for w in guess.frequencies)
-        if guess.amplitudes is not None:
-            self.coefficients[self._seeds] = [fixed(a) for a in guess.amplitudes]
+        held = guess.prescribed.held_amplitudes
+        if held is not None:
+            self.coefficients[self._seeds] = [fixed(a) for a in held]
         self._amplitudes = self.coefficients[self._seeds]
         self._set_jacobian(doubles)
         tell(f"{len(harmonics)} harmonics, {self.bits} bits", NO_FRACTION)
@@ -317,18 +306,12 @@ class TorusProblem(TruncatedProblem):
         self.force = KroneckerForce(there, box, _bits(doubles), reach)
 
     def _set_jacobian(self, doubles: Floats) -> None:
-        equation, guess = self.equation, self.start
-        linear = [self.chain.linear_frequency(q) for q in guess.seeds]
-        pairs = zip(guess.frequencies, linear, strict=True)
-        shifts = np.array([long(mpf(w) - x) for w, x in pairs])
-        conditions: Sequence[Condition]
-        if guess.amplitudes is None:
-            conditions = [FrequencyShift(i, x) for i, x in enumerate(shifts)]
-        else:
-            conditions = [Amplitude(i, long(a)) for i, a in enumerate(guess.amplitudes)]
+        guess = self.start
+        shifts = frequency_shifts(self.chain, guess.seeds, guess.frequencies)
+        conditions = guess.prescribed.conditions()
         table = doubles.astype(np.longdouble)
         try:
-            self.jacobian = Correction(equation, conditions, table, shifts)
+            self.jacobian = Correction(self.equation, conditions, table, shifts)
         except (np.linalg.LinAlgError, ValueError) as failure:
             raise Failure(f"the Jacobian is singular ({failure})") from failure
 
@@ -341,12 +324,24 @@ class TorusProblem(TruncatedProblem):
         divisors = ((rates**2) >> bits)[:, None] - squares
         return np.where(self.mask, ((divisors * c) >> bits) - force, 0)
 
-    def solve(self, residual: Floats) -> tuple[Floats, Floats]:
-        """The Jacobian's, with frequencies or amplitudes as they are."""
-        by_cosine, by_shift, _ = self.jacobian(residual, ACCURACY)
-        if self.start.amplitudes is None:
+    def conditions(self) -> Integers:
+        """What is prescribed and not held, as integers, (s,)."""
+        prescribed = self.start.prescribed
+        if prescribed.held_frequencies or prescribed.held_amplitudes:
+            return np.zeros(len(self.start.seeds), dtype=object)
+        every = np.ones(len(self.harmonics), dtype=bool)
+        fields = self._fields(every, self.numbers(), self.start.phases)
+        torus = FourierTorus(**fields, digits=mpmath.mp.dps)
+        values = prescribed.values(torus)
+        return np.array([self.force.fixed(mpmath.mpf(x)) for x in values], dtype=object)
+
+    def solve(self, residual: Floats, conditions: Floats) -> tuple[Floats, Floats]:
+        """The Jacobian's, with frequencies or amplitudes as they are where they are held."""
+        by_cosine, by_shift, _ = self.jacobian(residual, ACCURACY, conditions)
+        if self.start.prescribed.held_frequencies is not None:
             return by_cosine, np.zeros(len(by_shift))
-        by_cosine[self._seeds] = 0
+        if self.start.prescribed.held_amplitudes is not None:
+            by_cosine[self._seeds] = 0
         return by_cosine, by_shift
 
     def after_step(self, digits: float) -> None:
@@ -375,9 +370,8 @@ class TorusProblem(TruncatedProblem):
     @property
     def exact_frequencies(self) -> tuple[Fraction, ...]:
         """Those given, or those found."""
-        if self.start.amplitudes is None:
-            return self.start.frequencies
-        return _rational(self.frequencies, self.bits)
+        held = self.start.prescribed.held_frequencies
+        return held or _rational(self.frequencies, self.bits)
 
     def numbers(self) -> Any:
         """c as mpf, (H, C)."""
@@ -419,8 +413,9 @@ class TorusProblem(TruncatedProblem):
         out = np.ones(len(wanted), dtype=bool)
         out[rows] = False
         largest = self.largest << CHECK_BITS
+        update = self.update(residual[rows], self.conditions() << CHECK_BITS)
         return Truncation(
-            newton_update=self.size(self.update(residual[rows])) / 2**CHECK_BITS,
+            newton_update=self.size(update) / 2**CHECK_BITS,
             harmonics=wanted[out],
             neglected=neglected(residual[out], divisors[out], finer.bits, largest),
             residual=bound,

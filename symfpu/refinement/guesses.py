@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 import mpmath
 import numpy as np
 
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import mpf
 from symfpu.numbers.long_doubles import DIGITS, long
@@ -60,8 +61,15 @@ def require_moderate(coefficients: Floats) -> None:
 
 
 def shifts_of(torus: QuasiPeriodic) -> Floats:
+    """omega - Omega of the seeds of a torus in long doubles; shape (s,)."""
+    return frequency_shifts(torus.chain, torus.seeds, torus.frequencies)
+
+
+def frequency_shifts(
+    chain: Chain, seeds: Sequence[int], frequencies: Sequence[Fraction]
+) -> Floats:
     """omega - Omega of the seeds in long doubles; shape (s,)."""
     with mpmath.workdps(2 * DIGITS):
-        linear = [torus.chain.linear_frequency(q) for q in torus.seeds]
-        pairs = zip(torus.frequencies, linear, strict=True)
+        linear = [chain.linear_frequency(q) for q in seeds]
+        pairs = zip(frequencies, linear, strict=True)
         return np.array([long(mpf(w) - x) for w, x in pairs])

@@ -68,24 +68,32 @@ class Problem(ABC):
     def residual(self) -> Integers:
         """What the equations leave, times 2^bits, of the shape of the coefficients; 0 if masked."""
 
+    def conditions(self) -> Integers:
+        """What the conditions leave that fix one solution among many, times 2^bits, (n,)."""
+        return np.zeros(0, dtype=object)
+
     @abstractmethod
-    def solve(self, residual: Floats) -> tuple[Floats, Floats]:
+    def solve(self, residual: Floats, conditions: Floats) -> tuple[Floats, Floats]:
         """Changes of coefficients and frequencies, by the Jacobian, that take a residual away.
 
-        residual : a multiple of it that doubles hold. Raises LinAlgError for a singular Jacobian.
+        residual, conditions : one multiple of both that doubles hold. Raises LinAlgError for a
+        singular Jacobian.
         """
 
     @abstractmethod
     def after_step(self, digits: float) -> None:
         """What is checked, kept or made anew after a step; before it there were so many digits."""
 
-    def update(self, residual: Integers) -> Update:
+    def update(self, residual: Integers, conditions: Integers) -> Update:
         """What takes a residual away, in last places of that residual. Raises Failure."""
-        exponent = bit_length(residual)
+        exponent = max(bit_length(residual), bit_length(conditions))
         dropped, kept = max(exponent - DOUBLE_BITS, 0), min(exponent, DOUBLE_BITS)
-        scaled = np.ldexp(np.asarray(residual >> dropped, dtype=float), -kept)
+        scaled = [
+            np.ldexp(np.asarray(left >> dropped, dtype=float), -kept)
+            for left in (residual, conditions)
+        ]
         try:
-            return Update(*self.solve(scaled), exponent)
+            return Update(*self.solve(*scaled), exponent)
         except np.linalg.LinAlgError as failure:
             raise Failure(f"the Jacobian is singular ({failure})") from failure
 
@@ -117,14 +125,14 @@ def converge(problem: Problem, digits: int, report: Progress) -> None:
     least, stalled = math.inf, 0
     for _ in range(MOST_STEPS):
         problem.steps += 1
-        residual = problem.residual()
-        bits = bit_length(residual)
+        residual, conditions = problem.residual(), problem.conditions()
+        bits = max(bit_length(residual), bit_length(conditions))
         size = (bits - scale) * math.log10(2)
         label = f"{problem.name}step {problem.steps}: residual 1e{size:.0f}"
         report(label, NO_FRACTION)
         if bits <= ROUNDING_BITS:
             return
-        update = problem.update(residual)
+        update = problem.update(residual, conditions)
         problem.add(update)
         left = max(bits - scale, _log2(problem.size(update)))
         problem.after_step(-left * math.log10(2))

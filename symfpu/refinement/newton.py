@@ -323,13 +323,16 @@ class Correction:
         self._system = LinearSystem(equation, conditions, cosines, shifts)
         self._preconditioner = Preconditioner(self._system)
 
-    def __call__(self, imbalance: Floats, accuracy: float) -> tuple[Floats, Floats, int]:
+    def __call__(
+        self, imbalance: Floats, accuracy: float, conditions: Floats
+    ) -> tuple[Floats, Floats, int]:
         """Changes of coefficients (H, C) and shifts (s,) that take an imbalance (H, C) away.
 
-        The conditions stay met. The last result: products with the derivative.
+        conditions : what they leave, taken away too; (s,). The last result: products with the
+        derivative.
         """
         mask, s = self._system.mask, self._system.s
-        right = np.concatenate([-imbalance[mask], np.zeros(s)])
+        right = -np.concatenate([imbalance[mask], conditions])
         found = _solution(self._system, self._preconditioner, right, accuracy)
         change, products = found.change, found.products
         by_cosine = np.zeros(mask.shape)

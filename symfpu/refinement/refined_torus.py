@@ -34,7 +34,7 @@ NEARER = "start from a torus nearer to it, such as a member of a family from les
 SOLVED = 1e-15  # residual of an iterate that solves the equations: it is one of many
 DEGENERATE = (
     "the frequencies may be those of many amplitudes, as of mode N/2 in alpha: "
-    "give the amplitudes, refine_at_amplitudes"
+    "give the amplitudes, refine(torus, amplitudes=...)"
 )
 ENDED_EARLY = "Newton's method ended early"  # how the warning of such a torus begins
 

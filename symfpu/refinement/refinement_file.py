@@ -6,7 +6,8 @@ last one has the sign.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -49,18 +50,24 @@ def no_file(reached: Reached) -> None:
 
 
 class RefinementFile:
-    """The file of one run: of a chain, seeds, and their frequencies or amplitudes."""
+    """The file of one run: of a chain, seeds, and what fixes their torus, by name."""
 
-    def __init__(self, path: Path, chain: Chain, digits: int, **held: Any) -> None:
+    def __init__(
+        self,
+        path: Path,
+        chain: Chain,
+        digits: int,
+        seeds: tuple[int, ...],
+        prescribed: Mapping[str, Sequence[Fraction] | None],
+    ) -> None:
         self.path, self.chain = path, chain
         exact = {
             name: None if numbers is None else [fraction_text(x) for x in numbers]
-            for name, numbers in held.items()
-            if name != "seeds"
+            for name, numbers in prescribed.items()
         }
         self.parameters: Json = {
             **chain.typed,
-            "seeds": list(held["seeds"]),
+            "seeds": list(seeds),
             **exact,
             "steps": digits,
         }

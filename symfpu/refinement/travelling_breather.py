@@ -51,7 +51,7 @@ def travelling_breather(
     progress : called as (label, NO_FRACTION) on every step.
 
     Ours: the breathers of section 6.4 on a ring; the phase is 0. More of them, from one nearby:
-    `refine_at_amplitudes`, `refine_at_energy`. Raises InputError, also for a chain with fixed
+    `refine`. Raises InputError, also for a chain with fixed
     ends; NoRealAmplitude or UndeterminedAmplitudes if the lowest order has no amplitude of this
     frequency; NoTorus with the best iterate.
 

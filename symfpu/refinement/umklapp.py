@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from fractions import Fraction
 from math import lcm
 
 import numpy as np
@@ -20,9 +21,11 @@ STANDING = (
 )
 
 
-def require_independent(torus: QuasiPeriodic) -> None:
-    """InputError where nu.omega = 0 for a low harmonic: the angles are not independent then."""
-    frequencies = torus.frequencies
+def require_independent(torus: QuasiPeriodic, frequencies: Sequence[Fraction]) -> None:
+    """InputError where nu.omega = 0 for a low harmonic: the angles are not independent then.
+
+    frequencies : of the seeds of the torus, (s,).
+    """
     harmonics = np.concatenate([low_harmonics(len(frequencies)), torus.harmonics])
     shared = lcm(*(w.denominator for w in frequencies))
     whole = [int(w * shared) for w in frequencies]

@@ -24,7 +24,7 @@ def travelling(s):
     linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
     omega = [f"{linear[q] * 1.0003:.14f}" for q in (1, -3)]
     guess = solve_amplitudes(lindstedt(chain, (1, -3), omega, 6), phases={1: 0.3, -3: 1.1})
-    return symfpu.refine_at_amplitudes(refine(guess), {1: "0.3", -3: "0.2"})
+    return symfpu.refine(refine(guess), amplitudes={1: "0.3", -3: "0.2"})
 
 
 @cache
@@ -33,7 +33,7 @@ def standing(s):
         return unfold(symfpu.breather_at_amplitude(Chain(4, alpha="0.3", beta="0.4"), 2, "0.4"))
     amplitudes = {1: "0.3", 3: "0.2"}
     guess = symfpu.torus_at_amplitudes(Chain(5, beta=1), amplitudes, 6)
-    return unfold(symfpu.refine_at_amplitudes(guess, amplitudes))
+    return unfold(symfpu.refine(guess, amplitudes=amplitudes))
 
 
 @cache

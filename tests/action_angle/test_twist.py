@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, actions, breather_at_amplitude, periodic_orbit_digits, refine, refine_at_amplitudes, torus_at_amplitudes, twist
+from symfpu import Chain, actions, breather_at_amplitude, periodic_orbit_digits, refine, torus_at_amplitudes, twist
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.linear_system import SMALLEST_BLOCK
 from tests.action_angle.test_actions import SEEDS, refined_toda
@@ -75,11 +75,11 @@ def test_digits_of_a_torus(law, seed):
     """Symmetric to them, and what two tori nearby have."""
     chain, amplitudes = Chain(4, **CASES[law]), {1: "0.1", 2: "0.1"}
     guess = torus_at_amplitudes(chain, amplitudes, 4)
-    found = twist(refine_at_amplitudes(guess, amplitudes, digits=30))
+    found = twist(refine(guess, amplitudes=amplitudes, digits=30))
     assert (found.digits, found.method, found.matrix[0, 1].digits) == (30, "Newton", 30)
     assert found.asymmetry < mpmath.mpf(10) ** -30
     nearby = [moved(amplitudes, seed, part) for part in ("1e-12", "-1e-12")]
-    ends = [refine_at_amplitudes(guess, given, digits=40) for given in nearby]
+    ends = [refine(guess, amplitudes=given, digits=40) for given in nearby]
     assert missed(found, ends) < PRECISE_TWIST
 
 
@@ -103,10 +103,10 @@ def test_an_even_potential_with_more_harmonics_than_a_block_has():
     """Many digits keep odd harmonics alone; the slopes V''(r) - 1 have even ones alone."""
     amplitudes = {1: "0.1", 2: "0.1"}
     guess = torus_at_amplitudes(Chain(4, beta="0.5"), amplitudes, 4)
-    torus = refine_at_amplitudes(guess, amplitudes, digits=30)
+    torus = refine(guess, amplitudes=amplitudes, digits=30)
     assert np.count_nonzero(torus.cosines) > SMALLEST_BLOCK
     assert (torus.harmonics.sum(axis=1) % 2 == 1).all()
-    expected = twist(refine_at_amplitudes(guess, amplitudes))
+    expected = twist(refine(guess, amplitudes=amplitudes))
     for again in (torus, torus.in_doubles()):
         assert twist(again).matrix.astype(float) == pytest.approx(expected.matrix, rel=NEWTON_TWIST)
 

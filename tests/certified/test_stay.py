@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, NoStayProof, prove_stay, refine, refine_at_amplitudes, torus_at_amplitudes
+from symfpu import Chain, InputError, NoStayProof, prove_stay, refine, torus_at_amplitudes
 from symfpu.certified.frame import directions_of
 from symfpu.certified.growth import Growth
 from symfpu.certified.norms import norms, weights_of
@@ -165,7 +165,7 @@ def test_a_hyperbolic_torus_is_refused_by_name():
     sizes = {1: "0.1", 5: "0.7"}
     guess = torus_at_amplitudes(Chain(8, beta=1), sizes, order=6)
     with pytest.raises(InputError, match="elliptic"):
-        prove_stay(refine_at_amplitudes(guess, sizes))
+        prove_stay(refine(guess, amplitudes=sizes))
 
 
 @pytest.mark.long

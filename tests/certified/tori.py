@@ -4,7 +4,7 @@ from functools import cache
 
 import mpmath
 
-from symfpu import Chain, FourierTorus, refine_at_amplitudes, torus_at_amplitudes
+from symfpu import Chain, FourierTorus, refine, torus_at_amplitudes
 
 AMPLITUDES = {1: "0.2", 2: "0.1"}
 
@@ -13,7 +13,7 @@ AMPLITUDES = {1: "0.2", 2: "0.1"}
 def torus(N=3, **law):
     """Refined, with two angles."""
     guess = torus_at_amplitudes(Chain(N, **law or {"alpha": "0.3"}), AMPLITUDES, order=4)
-    return refine_at_amplitudes(guess, AMPLITUDES)
+    return refine(guess, amplitudes=AMPLITUDES)
 
 
 def one_off(exact, change):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from symfpu import Chain, FourierTorus, family, normal_modes, refine_at_amplitudes
+from symfpu import Chain, FourierTorus, family, normal_modes, refine
 from symfpu.action_angle.newton_twist import action_turn
 from symfpu.normal.search import followed_modes
 from tests.tolerances import EXTRAPOLATED_ONSET
@@ -32,11 +32,11 @@ def test_the_square_of_the_difference_vanishes_where_the_actions_turn():
     """N = 16, beta = 1, sigma_11 and 9 omega_1 beside the turn of the energy of seed 1: an inverse polynomial in the square."""
     found = family(Chain(16, beta=1), (1,), "5", from_energy="0.5", tolerance=1e-10, members=20)
     [fold] = [e for e in found.events if e.what == "H"]
-    orbit = refine_at_amplitudes(found.members[fold.after].torus, {1: "4.79"}, tolerance=1e-10)
+    orbit = refine(found.members[fold.after].torus, amplitudes={1: "4.79"}, tolerance=1e-10)
     guess = with_a_second_seed(orbit, 5)
 
     def torus(A):
-        return refine_at_amplitudes(guess, {1: repr(A), 5: repr(SIDE)}, tolerance=1e-9)
+        return refine(guess, amplitudes={1: repr(A), 5: repr(SIDE)}, tolerance=1e-9)
 
     turn = brentq(lambda A: action_turn(torus(A)), 4.76, 4.77, xtol=1e-11)
     squares, before = [], None

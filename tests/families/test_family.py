@@ -174,10 +174,7 @@ def test_a_fold_of_a_frequency_is_passed_and_located():
     near = folded().members[fold.after].torus
 
     def shift(ln_energy):
-        return [
-            float(shifts_of(symfpu.refine_at_energy(near, float(np.exp(x)), harmonic=False, energy_ratio={1: 1, 2: 1}))[1])
-            for x in ln_energy
-        ]
+        return [float(shifts_of(symfpu.refine(near, energy=float(np.exp(x)), energy_ratio={1: 1, 2: 1}))[1]) for x in ln_energy]
 
     about = np.log(0.003)
     shifts = Chebyshev.interpolate(shift, 10, domain=(about - 0.25, about + 0.25))

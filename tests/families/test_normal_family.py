@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, breather_at_amplitude, normal_family, normal_modes, refine_at_amplitudes, torus_at_amplitudes
+from symfpu import Chain, breather_at_amplitude, normal_family, normal_modes, refine, torus_at_amplitudes
 from symfpu.families.normal_events import RESONANCE, STABILITY, discriminant
 from symfpu.families.normal_zeros import Bracket, collision
 from symfpu.normal.resonances import PARAMETRIC, SUM
@@ -60,14 +60,14 @@ def test_what_comes_back_says_so():
 def test_the_onset_of_a_torus_is_the_same_from_both_sides():
     """By real frequencies alone, and by rates of growth alone: four tori each, beside it on one side."""
     start = {1: "0.1", 5: "0.41"}
-    solution = refine_at_amplitudes(torus_at_amplitudes(HYPERBOLIC, start, order=6), start)
+    solution = refine(torus_at_amplitudes(HYPERBOLIC, start, order=6), amplitudes=start)
     [event] = normal_family(solution, {1: "0.1", 5: "0.44"}, members=2, modes=[4, 6]).events
     assert (event.resonance.kind, event.resonance.modes, event.resonance.harmonic) == (SUM, (4, 6), (0, 2))
     for side in (-1, 1):
         places = event.amplitudes[5] + side * np.arange(1, 5) * 6e-4
         values = []
         for A in places:
-            torus = refine_at_amplitudes(solution, {1: "0.1", 5: float(A)})
+            torus = refine(solution, amplitudes={1: "0.1", 5: float(A)})
             found = normal_modes(torus, modes=[4, 6])
             assert found.stable == (side < 0)
             values.append(discriminant(found, event.resonance))
@@ -79,7 +79,7 @@ def test_the_onset_of_a_torus_is_the_same_from_both_sides():
 def test_a_narrow_tongue_of_a_torus_has_both_ends():
     """2 sigma_4 = (3,1).omega, 2e-5 of an amplitude wide, between two tori 0.15 apart; the ends as those that digits judge."""
     start = {1: "0.1", 5: "0.1"}
-    solution = refine_at_amplitudes(torus_at_amplitudes(HYPERBOLIC, start, order=6), start)
+    solution = refine(torus_at_amplitudes(HYPERBOLIC, start, order=6), amplitudes=start)
     begins, ends = normal_family(solution, {1: "0.1", 5: "0.25"}, members=2, modes=[4], resonance_length=4).events
     assert (begins.begins, ends.begins) == (True, False)
     for event, edge in zip((begins, ends), EDGES, strict=True):

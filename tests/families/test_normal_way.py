@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, NormalEvent, breather_at_amplitude, family, floquet, normal_family, refine_at_amplitudes
+from symfpu import Chain, InputError, NormalEvent, breather_at_amplitude, family, floquet, normal_family, refine
 from symfpu.errors import RunInterrupted
 from symfpu.families.normal_zeros import Bracket, located
 from tests.tolerances import BESIDE_AN_ONSET, FIXED_ENERGY, GROWTH_BY_FLOQUET, NORMAL_CONVERGED, ONSET
@@ -63,7 +63,7 @@ def zero_by_floquet(near, A):
     curvature is taken out by two distances."""
 
     def squared(a):
-        multipliers = floquet(refine_at_amplitudes(near, {1: repr(a)}, tolerance=1e-10)).multipliers
+        multipliers = floquet(refine(near, amplitudes={1: repr(a)}, tolerance=1e-10)).multipliers
         logarithms = np.log(multipliers[np.argsort(np.abs(multipliers - 1))][2:4])
         return float((logarithms**2).real.mean())
 
@@ -104,7 +104,7 @@ def test_normal_frequencies_go_through_a_fold_of_the_energy():
         near, counts = found.members[event.after].torus, []
         for side in (-1, 1):
             A = event.amplitudes[1] + side * 10 * BESIDE_AN_ONSET
-            counts.append(floquet(refine_at_amplitudes(near, {1: repr(A)}, tolerance=1e-10)).instabilities.get("complex quadruple", 0))
+            counts.append(floquet(refine(near, amplitudes={1: repr(A)}, tolerance=1e-10)).instabilities.get("complex quadruple", 0))
         assert counts[1] == counts[0] + 1
 
 

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, floquet, normal_family, normal_modes, refine_at_amplitudes, torus_at_amplitudes
+from symfpu import Chain, breather_at_amplitude, floquet, normal_family, normal_modes, refine, torus_at_amplitudes
 from symfpu.normal.search import LOST, followed_modes
 from tests.tolerances import NORMAL_CONVERGED, NORMAL_MULTIPLIER
 
@@ -30,9 +30,9 @@ def start(name):
     if len(wanted) == 1:
         return breather_at_amplitude(chain, *wanted, *wanted.values())
     near = {q: min(float(a), 0.2) for q, a in wanted.items()}
-    found = refine_at_amplitudes(torus_at_amplitudes(chain, {q: repr(a) for q, a in near.items()}, order=6), near)
+    found = refine(torus_at_amplitudes(chain, {q: repr(a) for q, a in near.items()}, order=6), amplitudes=near)
     for part in (0.25, 0.5, 0.75, 1.0):
-        found = refine_at_amplitudes(found, {q: a + part * (float(wanted[q]) - a) for q, a in near.items()})
+        found = refine(found, amplitudes={q: a + part * (float(wanted[q]) - a) for q, a in near.items()})
     return found
 
 

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 import symfpu
-from symfpu import Chain, lindstedt, refine, refine_at_energy, solve_amplitudes, torus_at_amplitudes, torus_at_energy
+from symfpu import Chain, lindstedt, refine, solve_amplitudes, torus_at_amplitudes, torus_at_energy
 from tests.fingerprint.cases import case
 from tests.fingerprint.entries import solver
 
@@ -57,10 +57,10 @@ def by_wish():
 @case
 def by_newton():
     yield from told("at frequencies", refine(pair()))
-    yield from told("at amplitudes", symfpu.refine_at_amplitudes(pair(), {1: "0.25", 2: "0.1"}))
-    yield from told("at energy", refine_at_energy(pair(), "0.02", harmonic=False))
-    yield from told("at energy, shared", refine_at_energy(pair(), "0.02", harmonic=True, energy_ratio={1: 1, 2: 1}))
-    yield from told("at a start", symfpu.refine_at_start(pair(), {1: "0.21", 2: "0.09"}))
+    yield from told("at amplitudes", symfpu.refine(pair(), amplitudes={1: "0.25", 2: "0.1"}))
+    yield from told("at energy", refine(pair(), energy="0.02"))
+    yield from told("at energy, shared", refine(pair(), energy="0.02", harmonic=True, energy_ratio={1: 1, 2: 1}))
+    yield from told("at a start", symfpu.refine(pair(), start={1: "0.21", 2: "0.09"}))
     yield from told("digits", refine(torus_at_amplitudes(Chain(4, alpha="0.3"), {1: "0.2", 2: "0.1"}, order=4), digits=30))
     figure = symfpu.solve_amplitudes(symfpu.lindstedt(Chain(16, alpha="0.33"), (1, 2), ("0.19626", "0.39046"), 8))
     yield from told("Fig. 1", refine(figure))
@@ -85,7 +85,7 @@ def rings():
     wave = solve_amplitudes(series)
     yield from told("wave of a series", wave)
     yield from told("wave by Newton", refine(wave))
-    yield from told("wave at amplitude", symfpu.refine_at_amplitudes(wave, {1: "0.15"}))
+    yield from told("wave at amplitude", symfpu.refine(wave, amplitudes={1: "0.15"}))
     yield from told("two waves", solve_amplitudes(lindstedt(Chain(9, beta=1, ends="periodic"), (1, 2), ("0.6850", "1.2870"), 4)))
     long = Chain(64, beta=1, ends="periodic")
     yield from told("breather of a ring", symfpu.travelling_breather(long, 5, amplitude="0.8"))

@@ -25,7 +25,7 @@ def orbit(name):
 @cache
 def torus():
     amplitudes = {1: "0.2", 2: "0.1"}
-    return symfpu.refine_at_amplitudes(torus_at_amplitudes(Chain(4, alpha="0.3"), amplitudes, order=4), amplitudes)
+    return symfpu.refine(torus_at_amplitudes(Chain(4, alpha="0.3"), amplitudes, order=4), amplitudes=amplitudes)
 
 
 @cache

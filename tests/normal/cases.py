@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from symfpu import refine_at_amplitudes, torus_at_amplitudes
+from symfpu import refine, torus_at_amplitudes
 from tests.tolerances import NORMAL_MULTIPLIER
 
 
@@ -12,7 +12,7 @@ from tests.tolerances import NORMAL_MULTIPLIER
 def torus(chain, amplitudes, order=6):
     """Of pairs (seed, amplitude), by Newton's method in doubles."""
     wanted = dict(amplitudes)
-    return refine_at_amplitudes(torus_at_amplitudes(chain, wanted, order=order), wanted)
+    return refine(torus_at_amplitudes(chain, wanted, order=order), amplitudes=wanted)
 
 
 def assert_multipliers(found, expected):

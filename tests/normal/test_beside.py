@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu import Chain, NoNormalModes, family, floquet, normal_family, normal_modes, refine_at_amplitudes
+from symfpu import Chain, NoNormalModes, family, floquet, normal_family, normal_modes, refine
 from tests.tolerances import BESIDE_MULTIPLIER, EXTRAPOLATED_ONSET
 
 pytestmark = pytest.mark.long
@@ -23,7 +23,7 @@ def near_the_turn():
 
 
 def breather(A):
-    return refine_at_amplitudes(near_the_turn(), {1: A}, tolerance=1e-10)
+    return refine(near_the_turn(), amplitudes={1: A}, tolerance=1e-10)
 
 
 @pytest.mark.parametrize("A", AMPLITUDES)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, NoNormalModes, breather_at_amplitude, normal_modes, periodic_orbit_digits, refine_at_amplitudes, toda
+from symfpu import Chain, NoNormalModes, breather_at_amplitude, normal_modes, periodic_orbit_digits, refine, toda
 from symfpu.normal import digits as normal_digits
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.iterative_refinement import Failure
@@ -22,7 +22,7 @@ GROWTH_4 = "0.035136143270181357980215832942368939678481634372013"
 
 @cache
 def torus(chain, amplitudes, digits, order=6):
-    return refine_at_amplitudes(cases.torus(chain, amplitudes, order), dict(amplitudes), digits=digits)
+    return refine(cases.torus(chain, amplitudes, order), amplitudes=dict(amplitudes), digits=digits)
 
 
 def small(digits=20):

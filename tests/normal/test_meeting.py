@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, ParametricResonance, RefinedTorus, normal_modes, refine_at_amplitudes, travelling_breather
+from symfpu import Chain, ParametricResonance, RefinedTorus, normal_modes, refine, travelling_breather
 from symfpu.action_angle.newton_twist import equation_of
 from symfpu.normal.meeting import Crossed, Lost, Meeting
 from symfpu.normal.resonances import PARAMETRIC, SUM
@@ -82,7 +82,7 @@ def test_a_place_without_the_directions_is_lost():
 
 
 def discriminant_in_digits(resonance, A):
-    solution = refine_at_amplitudes(torus("0.41"), {1: "0.1", 5: A}, digits=30)
+    solution = refine(torus("0.41"), amplitudes={1: "0.1", 5: A}, digits=30)
     modes = normal_modes(solution, modes=sorted(set(resonance.modes)))
     with mpmath.workdps(40):
         growth = max(mode.growth for mode in modes.modes)

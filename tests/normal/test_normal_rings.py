@@ -57,7 +57,7 @@ def test_a_normal_frequency_is_that_of_a_wave_more_at_rest():
     sigma = normal_modes(symfpu.travelling_breather(chain, 1, amplitude="0.2")).frequencies[-3]
     linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
     guess = two_waves(chain, [f"{linear[q] * 1.001:.12f}" for q in (1, -3)], 6)
-    missed = [float(symfpu.refine_at_amplitudes(guess, {1: "0.2", -3: A}).omega[-3]) - sigma for A in ("0.02", "0.01")]
+    missed = [float(symfpu.refine(guess, amplitudes={1: "0.2", -3: A}).omega[-3]) - sigma for A in ("0.02", "0.01")]
     assert missed[0] / missed[1] == pytest.approx(4, rel=PHANTOM_WAVE)
 
 

@@ -186,7 +186,7 @@ REFUSED = {
     "a high power": (lambda: symfpu.collect_terms((X + 1) ** 100_000, [X]), "terms when expanded"),
     "points": (lambda: symfpu.prove_propagation(8, (1, 4), 2, points=10**9), "points = .*from 0 to 1000"),
     "a tolerance": (
-        lambda: symfpu.refine_at_energy(ring_wave(), "0.01", harmonic=True, tolerance=mpmath.mpf("1e-400")),
+        lambda: symfpu.refine(ring_wave(), energy="0.01", harmonic=True, tolerance=mpmath.mpf("1e-400")),
         "tolerance.*between 0 and 1",
     ),
     "complex coordinates": (lambda: ALPHA.stretches(np.ones(7, dtype=complex)), "Q = .*an array of real numbers"),
@@ -199,7 +199,7 @@ REFUSED = {
         "t = .*allowed is .*(an array of them|array of finite numbers)",
     ),
     "an energy of a map": (lambda: symfpu.frequency_map(ALPHA, ["1e400"], T=100, step=0.1), "energies = '1e400'.*1e-50 to 1e50"),
-    "an energy of a torus": (lambda: symfpu.refine_at_energy(ring_wave(), "1e400", harmonic=True), "energy.*1e-50 to 1e50"),
+    "an energy of a torus": (lambda: symfpu.refine(ring_wave(), energy="1e400", harmonic=True), "energy.*1e-50 to 1e50"),
     "a degree of shifts": (lambda: ALPHA.shift_degrees(10**400), "highest"),
     "a power of forces": (lambda: ALPHA.relative_couplings(2**63), "highest"),
     "a number of bonds": (lambda: Chain(np.zeros(0), alpha=1), "N = array"),

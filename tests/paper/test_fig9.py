@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from symfpu import Chain, fpu_trajectory, packet_state, refine_at_start
+from symfpu import Chain, fpu_trajectory, packet_state, refine
 from symfpu.action_angle.foretold import flow_of, growth_rates
 from symfpu.paper import dimensions, fig9
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
@@ -130,7 +130,7 @@ def test_the_kept_torus_of_five_angles_starts_where_the_trajectory_does():
 @pytest.mark.long
 def test_more_harmonics_change_neither_rates_nor_the_dimension_that_is_foretold():
     torus, start = five_angles(), start_of_the_trajectory()
-    finer = refine_at_start(torus, {q: float(start[q - 1]) for q in torus.seeds}, most_harmonics=4000)
+    finer = refine(torus, start={q: float(start[q - 1]) for q in torus.seeds}, most_harmonics=4000)
     assert finer.residual() < torus.residual() / 2
     rates, other = (growth_rates(flow_of(one))[:4] for one in (torus, finer))
     assert rates == pytest.approx(other, rel=KEPT_RATES)

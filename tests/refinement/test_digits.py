@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import BundleError, Chain, InputError, NoTorus, actions, load, refine, refine_at_amplitudes, save, torus_at_amplitudes
+from symfpu import BundleError, Chain, InputError, NoTorus, actions, load, refine, save, torus_at_amplitudes
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.digits import TorusProblem, guess_of
 from symfpu.refinement.refinement_file import no_file, whole, words
@@ -37,7 +37,7 @@ def ten(exponent):
 
 @cache
 def small(digits):
-    return refine_at_amplitudes(torus_at_amplitudes(SMALL, SMALL_AMPLITUDES, order=3), SMALL_AMPLITUDES, digits=digits)
+    return refine(torus_at_amplitudes(SMALL, SMALL_AMPLITUDES, order=3), amplitudes=SMALL_AMPLITUDES, digits=digits)
 
 
 def farthest(one, two):
@@ -99,7 +99,7 @@ def test_one_angle_is_the_sum_of_the_series():
 
 def test_a_torus_that_runs_away_is_refused():
     """alpha, N = 4, seed 2: omega = Omega_2 at every amplitude, and that of doubles is not quite Omega_2."""
-    near = refine_at_amplitudes(symfpu.breather_at_amplitude(Chain(4, alpha="0.5"), 2, "0.3"), {2: "0.3"})
+    near = refine(symfpu.breather_at_amplitude(Chain(4, alpha="0.5"), 2, "0.3"), amplitudes={2: "0.3"})
     with pytest.raises(NoTorus, match=r"A_2 goes from 0\.3 to (0|-?[0-9.]+e-)"):
         refine(near, digits=20)
 
@@ -204,7 +204,7 @@ def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
     more = refine(near, digits=36, file=file)
     assert more.sweeps > again.sweeps
     with pytest.raises(InputError, match=r"^file = .*frequencies is"):
-        refine_at_amplitudes(near, SMALL_AMPLITUDES, digits=40, file=file)
+        refine(near, amplitudes=SMALL_AMPLITUDES, digits=40, file=file)
     with pytest.raises(InputError, match=r"^file = .*without digits"):
         refine(near, file=file)
     file.write_bytes(file.read_bytes()[:-40])
@@ -215,8 +215,8 @@ def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
 @pytest.mark.long
 def test_amplitudes_go_on_with_their_frequencies(tmp_path):
     near, file = small(20).in_doubles(), tmp_path / "run"
-    refine_at_amplitudes(near, SMALL_AMPLITUDES, digits=18, file=file)
-    more = refine_at_amplitudes(near, SMALL_AMPLITUDES, digits=32, file=file)
+    refine(near, amplitudes=SMALL_AMPLITUDES, digits=18, file=file)
+    more = refine(near, amplitudes=SMALL_AMPLITUDES, digits=32, file=file)
     assert farthest(more, small(32)) < ten(-32)
     with pytest.raises(BundleError, match="which holds no torus"):
         load(file)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.sparse.linalg
 
-from symfpu import Chain, NoTorus, refine_at_amplitudes, torus_at_amplitudes
+from symfpu import Chain, NoTorus, refine, torus_at_amplitudes
 from symfpu.borders import newton_end
 from symfpu.borders.point import Ray
 from symfpu.refinement import linear_system, newton, refined_torus
@@ -41,9 +41,9 @@ def solver(monkeypatch):
 
 def test_a_step_that_lowers_the_residual_is_a_step(solver):
     """Two systems are solved to 0.7 of their right-hand sides, the others to the end: the torus is that of exact steps."""
-    expected = refine_at_amplitudes(guess(), WANTED)
+    expected = refine(guess(), amplitudes=WANTED)
     solver(0.3, 0.3, 1)
-    found = refine_at_amplitudes(guess(), WANTED)
+    found = refine(guess(), amplitudes=WANTED)
     assert found.warnings == ()
     assert len(found.steps) > len(expected.steps)
     assert np.array_equal(found.harmonics, expected.harmonics)
@@ -55,13 +55,13 @@ def test_a_step_that_does_not_is_the_last(solver):
     for part in (0.01, -1.0):
         solver(part)
         with pytest.raises(NoTorus, match=r"products leave \d\S* of the right-hand side"):
-            refine_at_amplitudes(guess(), WANTED)
+            refine(guess(), amplitudes=WANTED)
 
 
 @pytest.mark.parametrize("part", [0.0, 0.01])
 def test_where_all_but_rounding_was_reached_that_is_the_torus(solver, part):
     solver(1, 1, 1, part)
-    found = refine_at_amplitudes(guess(), WANTED)
+    found = refine(guess(), amplitudes=WANTED)
     [warning] = found.warnings
     assert ended_early(found)
     assert found.verdict == "doubtful"
@@ -74,7 +74,7 @@ def test_before_that_there_is_no_torus(solver):
     """The step before was still large, whatever the residual."""
     solver(1, 0.0)
     with pytest.raises(NoTorus) as failure:
-        refine_at_amplitudes(guess({1: "0.2999", 3: "0.15"}), WANTED)
+        refine(guess({1: "0.2999", 3: "0.15"}), amplitudes=WANTED)
     assert failure.value.iterate.amplitudes[1] == pytest.approx(0.3, abs=REFINED_COEFFICIENT)
     assert not failure.value.iterate.warnings
 
@@ -82,7 +82,7 @@ def test_before_that_there_is_no_torus(solver):
 def two_choices_of_harmonics():
     """From the lowest series, whose fall-off asks for half as many harmonics as are needed: 122 leave 2.9e-11."""
     amplitudes = {1: "0.4", 2: "0.2"}
-    return refine_at_amplitudes(torus_at_amplitudes(Chain(8, beta="0.3"), amplitudes, order=1), amplitudes)
+    return refine(torus_at_amplitudes(Chain(8, beta="0.3"), amplitudes, order=1), amplitudes=amplitudes)
 
 
 @pytest.mark.parametrize("level", [USEFUL, 1e-11])
@@ -122,7 +122,7 @@ def test_a_border_does_not_take_it_for_a_torus(solver, monkeypatch):
     first, tori = ray.torus(place, None), newton_end._Tori(ray, one_family=False)
     assert tori.refined(first, place, newton_end.MOST_HARMONICS).warnings == ()
     solver(1, 1, 1, 0.0)
-    early = refine_at_amplitudes(guess(), WANTED)
-    monkeypatch.setattr(newton_end, "refine_at_energy", lambda *_, **__: early)
+    early = refine(guess(), amplitudes=WANTED)
+    monkeypatch.setattr(newton_end, "refine", lambda *_, **__: early)
     with pytest.raises(NoTorus, match=ENDED_EARLY):
         tori.refined(first, place, newton_end.MOST_HARMONICS)

@@ -7,7 +7,7 @@ import sys
 import psutil
 import pytest
 
-from symfpu import Chain, InputError, TorusTooLarge, refine_at_amplitudes, torus_at_amplitudes
+from symfpu import Chain, InputError, TorusTooLarge, refine, torus_at_amplitudes
 from symfpu.refinement import memory, search, tori
 from tests.tori.test_ring_torus import torus as waves
 
@@ -26,7 +26,7 @@ search.require_memory = lambda found, chain: sizes.append(found.bytes())
 status = lambda name: int(Path("/proc/self/status").read_text().split(name)[1].split()[0]) * 1024
 Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
 before = status("VmRSS:")
-tori.refine_at_amplitudes(near, wanted, most_harmonics={most})
+tori.refine(near, amplitudes=wanted, most_harmonics={most})
 print(status("VmHWM:") - before, max(sizes))
 """
 FIXED = """
@@ -84,7 +84,7 @@ def test_what_does_not_fit_is_refused_before_it_is_begun(monkeypatch, stage):
     guess, needed = near(chain, wanted), []
     with monkeypatch.context() as here:
         here.setattr(search, "require_memory", lambda sizes, chain: needed.append(sizes.bytes()))
-        refine_at_amplitudes(guess, wanted)
+        refine(guess, amplitudes=wanted)
     least, whole = needed
     assert least < whole
     free = least - 1 if stage == "before its equations" else whole - 1
@@ -97,7 +97,7 @@ def test_what_does_not_fit_is_refused_before_it_is_begun(monkeypatch, stage):
     if free < least:
         monkeypatch.setattr(search, "InvarianceEquation", none)
     with pytest.raises(TorusTooLarge) as refused:
-        refine_at_amplitudes(guess, wanted)
+        refine(guess, amplitudes=wanted)
     error = refused.value
     assert isinstance(error, InputError)
     assert (error.free, error.needed) == (free, free + 1)
@@ -112,8 +112,8 @@ def test_as_many_harmonics_as_it_names_fit(monkeypatch):
     free = int(memory.KEPT_BYTES * 1.25)
     monkeypatch.setattr(psutil, "virtual_memory", lambda: type("Memory", (), {"available": free}))
     with pytest.raises(TorusTooLarge) as refused:
-        refine_at_amplitudes(guess, wanted)
-    found = refine_at_amplitudes(guess, wanted, most_harmonics=refused.value.largest)
+        refine(guess, amplitudes=wanted)
+    found = refine(guess, amplitudes=wanted, most_harmonics=refused.value.largest)
     assert len(found.harmonics) <= refused.value.largest
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, assess, refine, refine_at_energy, resum, torus_at_amplitudes, torus_at_energy
+from symfpu import Chain, assess, refine, resum, torus_at_amplitudes, torus_at_energy
 from symfpu.refinement.invariance import InvarianceEquation
 from tests.tolerances import FIXED_ENERGY, PROMISED_RESIDUAL, SLOPE
 
@@ -36,7 +36,7 @@ def test_frequencies_of_series_err_by_the_next_order(law):
     for K, part in itertools.product((2, 4), (1, 0.5)):
         amplitudes = {1: part * LAWS[law], 2: part * LAWS[law] / 2}
         series = torus_at_amplitudes(chain, amplitudes, order=K)
-        exact = symfpu.refine_at_amplitudes(series, amplitudes)
+        exact = symfpu.refine(series, amplitudes=amplitudes)
         off = [float(a - b) for a, b in zip(series.frequencies, exact.frequencies, strict=True)]
         errors[K, part] = max(map(abs, off))
     for K in (2, 4):
@@ -54,7 +54,7 @@ def test_a_torus_has_the_energy_asked_for_and_its_verdict(law):
     assert float(torus.energy()) == pytest.approx(float(energy), rel=FIXED_ENERGY)
     assert assess(torus.series, torus).word == "converged"
     assert resum(torus).residual() < 10 * torus.residual()
-    refined = refine_at_energy(torus, energy, harmonic=False)
+    refined = refine(torus, energy=energy)
     assert float(refined.energy()) == pytest.approx(float(energy), rel=FIXED_ENERGY)
 
 

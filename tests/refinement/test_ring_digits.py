@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, actions, load, refine, refine_at_amplitudes, save, toda_torus, unfold
+from symfpu import Chain, InputError, actions, load, refine, save, toda_torus, unfold
 from symfpu.refinement.digits import TorusProblem, guess_of
 from symfpu.refinement.refinement_file import no_file
 from tests.refinement.test_digits import ten, unheard
@@ -80,7 +80,7 @@ def test_of_toda_energy_and_actions_are_those_of_the_spectral_curve(N, seeds):
     linear = [float(chain.frequencies()[chain.mode_numbers.index(q)]) for q in seeds]
     guess = seeds_alone(chain, seeds, linear, [0.3] * len(seeds))
     given = {q: f"0.{3 + i}" for i, q in enumerate(seeds)}
-    found = refine(refine_at_amplitudes(guess, given), digits=24)
+    found = refine(refine(guess, amplitudes=given), digits=24)
     exact = toda_torus(chain, seeds, frequencies=found.frequencies, digits=30)
     with mpmath.workdps(40):
         assert abs(found.energy("0.7") / exact.energy - 1) < ten(-22)
@@ -96,9 +96,9 @@ def test_more_digits_continue_fewer_and_amplitudes_lead_back_to_frequencies(tmp_
         off = max(abs(one.get(nu, 0) - b) for nu, b in other.items())
         assert 0 < off < ten(-25) * max(abs(more.cosines))
         held = {1: mpmath.nstr(more.amplitude, 40)}
-        again = refine_at_amplitudes(near("alpha"), held, digits=30, file=file)
+        again = refine(near("alpha"), amplitudes=held, digits=30, file=file)
         assert abs(mpmath.mpf((again.frequency - more.frequency).numerator) / (again.frequency - more.frequency).denominator) < ten(-30)
-    resumed = refine_at_amplitudes(near("alpha"), held, digits=36, file=file)
+    resumed = refine(near("alpha"), amplitudes=held, digits=36, file=file)
     assert resumed.sweeps > again.sweeps
     loaded = load(save(tmp_path / "torus", more)).torus
     assert type(loaded) is symfpu.PreciseTorus

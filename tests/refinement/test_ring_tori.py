@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, NoTorus, lindstedt, refine, refine_at_amplitudes, refine_at_energy, toda_gaps, unfold
+from symfpu import Chain, InputError, NoTorus, lindstedt, refine, toda_gaps, unfold
 from tests.tolerances import CLOSED_GAP_OF_A_TORUS, CONVERGED_DIGITS, NEWTON_SLOPE, ORBIT, PROMISED_RESIDUAL, ROUNDING
 from tests.tori.test_ring_torus import integrated, ring
 
@@ -96,7 +96,7 @@ def test_of_toda_all_gaps_but_those_of_the_seeds_are_closed(N, seeds):
     chain = ring(N, **TODA)
     linear = [float(chain.frequencies()[chain.mode_numbers.index(q)]) for q in seeds]
     guess = seeds_alone(chain, seeds, linear, [0.3] * len(seeds))
-    found = refine_at_amplitudes(guess, {q: f"0.{3 + i}" for i, q in enumerate(seeds)})
+    found = refine(guess, amplitudes={q: f"0.{3 + i}" for i, q in enumerate(seeds)})
     gaps = dict(zip(chain.mode_numbers, toda_gaps(chain, *found.state()), strict=True))
     open_gaps = {q for q, gap in gaps.items() if gap > CLOSED_GAP_OF_A_TORUS}
     assert open_gaps == set(seeds)
@@ -108,7 +108,7 @@ def test_of_toda_all_gaps_but_those_of_the_seeds_are_closed(N, seeds):
 def test_amplitudes_give_back_the_frequencies(name):
     found = refined(name)
     given = {q: repr(A) for q, A in found.amplitudes.items()}
-    again = refine_at_amplitudes(start(name), given)
+    again = refine(start(name), amplitudes=given)
     frequencies = [np.array(torus.frequencies, dtype=float) for torus in (found, again)]
     assert np.allclose(*frequencies, rtol=CONVERGED_DIGITS, atol=0)
 
@@ -116,18 +116,18 @@ def test_amplitudes_give_back_the_frequencies(name):
 @pytest.mark.parametrize("name", ["two", *(pytest.param(name, marks=pytest.mark.long) for name in ("N = 3", "opposite"))])
 def test_energies_are_what_was_asked_for(name):
     guess = start(name)
-    at_energy = refine_at_energy(guess, "0.02", harmonic=False)
+    at_energy = refine(guess, energy="0.02")
     assert np.isclose(at_energy.energy(1.3), 0.02, rtol=CONVERGED_DIGITS)
     sizes = [np.array(list(torus.amplitudes.values())) for torus in (guess, at_energy)]
     assert np.allclose(sizes[0] / sizes[0][0], sizes[1] / sizes[1][0], rtol=CONVERGED_DIGITS)
-    harmonic = refine_at_energy(guess, "0.02", harmonic=True)
+    harmonic = refine(guess, energy="0.02", harmonic=True)
     assert np.isclose(harmonic.average_spectrum().sum(), 0.02, rtol=CONVERGED_DIGITS)
 
 
 def test_a_ratio_of_energies_is_that_of_the_averaged_modes():
     """Mode N/2 is its own opposite: all of its waves are in it, half of those of the others."""
     guess = seeds_alone(ring(8, beta=1), (1, 4), (1, 2), (0.2, 0.1))
-    found = refine_at_energy(guess, "0.05", harmonic=False, energy_ratio={1: 1, 4: 3})
+    found = refine(guess, energy="0.05", energy_ratio={1: 1, 4: 3})
     spectrum = dict(zip(found.chain.mode_numbers, found.average_spectrum(), strict=True))
     assert np.isclose(spectrum[4] / spectrum[1], 3, rtol=CONVERGED_DIGITS)
 
@@ -147,7 +147,7 @@ def test_the_mirror_image_runs_the_other_way(name):
 
 def test_standing_waves_and_equal_frequencies_are_refused():
     standing = unfold(symfpu.solve_amplitudes(symfpu.lindstedt(Chain(8, beta=1), (1,), ("0.391",), 2)))
-    for door in (refine, lambda torus: refine_at_amplitudes(torus, {1: 1})):
+    for door in (refine, lambda torus: refine(torus, amplitudes={1: 1})):
         with pytest.raises(InputError, match="unfold"):
             door(standing)
     equal = seeds_alone(ring(16, beta=1), (2, -2), ("0.775", "0.775"), (0.2, 0.2))
@@ -155,7 +155,7 @@ def test_standing_waves_and_equal_frequencies_are_refused():
         refine(equal)
     free = seeds_alone(ring(16, beta=1), (2, -2), ("0.775", "0.776"), (0.2, 0.2))
     with pytest.raises(InputError, match="amplitude_ratio"):
-        refine_at_energy(free, 1, harmonic=False, energy_ratio={2: 1, -2: 1})
+        refine(free, energy=1, energy_ratio={2: 1, -2: 1})
     series = lindstedt(ring(5, beta=1), (1,), ("1.2",), 2)
     with pytest.raises(InputError, match="torus"):
         refine(series)
@@ -167,7 +167,7 @@ def test_standing_waves_and_equal_frequencies_are_refused():
 def test_an_umklapp_resonance_is_named():
     guess = seeds_alone(ring(16, beta=1), (4, -4), ("1.43", "1.432"), (0.2, 0.2))
     with pytest.raises(NoTorus, match="Umklapp") as caught:
-        refine_at_amplitudes(guess, {4: "0.2", -4: "0.15"})
+        refine(guess, amplitudes={4: "0.2", -4: "0.15"})
     assert caught.value.iterate.seeds == (4, -4)
     assert caught.value.residual > PROMISED_RESIDUAL
 
@@ -175,7 +175,7 @@ def test_an_umklapp_resonance_is_named():
 def test_a_wave_that_its_chain_leaves_harmonic_has_no_amplitude_of_its_own():
     """r_j = +-r: alpha r^2 pulls both neighbours alike, so that omega = 2 at any amplitude."""
     guess = seeds_alone(ring(8, alpha="0.3"), (4,), (2,), (0.1,))
-    assert refine_at_amplitudes(guess, {4: "0.2"}).frequencies == (2,)
+    assert refine(guess, amplitudes={4: "0.2"}).frequencies == (2,)
     with pytest.raises(NoTorus, match="singular"):
         refine(guess)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, NoTorus, frequency_shift, lindstedt, refine, refine_at_amplitudes, refine_at_energy
+from symfpu import Chain, InputError, NoTorus, frequency_shift, lindstedt, refine
 from symfpu.paper.printed import TWO_TORUS
 from symfpu.refinement import newton
 from symfpu.refinement.conditions import FrequencyShift
@@ -151,7 +151,7 @@ def test_one_seed_is_a_periodic_orbit(case):
 @pytest.mark.parametrize("case", ["alpha, breather", "mixed, two", "beta, two"])
 def test_amplitudes_give_the_frequencies_back(case):
     torus = refined(case)
-    back = refine_at_amplitudes(series_torus(case), torus.amplitudes)
+    back = refine(series_torus(case), amplitudes=torus.amplitudes)
     assert [float(w) for w in back.frequencies] == pytest.approx([float(w) for w in torus.frequencies], rel=REFINED_COEFFICIENT)
     assert shifts_of(back).astype(float) == pytest.approx(shifts_of(torus).astype(float), rel=1e3 * REFINED_COEFFICIENT)
     assert back.amplitudes == pytest.approx(torus.amplitudes, rel=2 * EPS)
@@ -172,7 +172,7 @@ def test_an_energy_and_a_ratio_give_the_torus_back(harmonic, ratio):
         "energy_ratio": {q: 7 * spectrum[q - 1] for q in torus.seeds},
     }
     guess = replace(torus, cosines=1.05 * torus.cosines, phases={2: 0.3, 5: 1.1})
-    back = refine_at_energy(guess, float(energy), harmonic=harmonic, **({} if ratio is None else {ratio: ratios[ratio]}))
+    back = refine(guess, energy=float(energy), harmonic=harmonic, **({} if ratio is None else {ratio: ratios[ratio]}))
     start = replace(back, phases={2: 0.0, 5: 0.0})
     assert float(start.harmonic_energies().sum() if harmonic else back.energy()) == pytest.approx(float(energy), rel=REFINED_COEFFICIENT)
     assert back.phases == guess.phases
@@ -186,8 +186,10 @@ def small(case, scale):
     amplitudes = {q: scale * a for q, a in CASES[case][1].items()}
     torus = series_torus(case)
     reach = scale ** np.abs(torus.harmonics).sum(axis=1)[:, None]
-    return refine_at_amplitudes(
-        replace(refined(case), harmonics=torus.harmonics, cosines=torus.cosines * reach), amplitudes, tolerance=tolerances.FEW_HARMONICS
+    return refine(
+        replace(refined(case), harmonics=torus.harmonics, cosines=torus.cosines * reach),
+        amplitudes=amplitudes,
+        tolerance=tolerances.FEW_HARMONICS,
     ), amplitudes
 
 
@@ -267,7 +269,7 @@ def test_guesses_that_are_none_are_refused(scale):
 @pytest.mark.parametrize("energy", [1e9, 1e50])
 def test_an_energy_beyond_reach_is_refused(energy):
     with pytest.raises(NoTorus) as failure:
-        refine_at_energy(refined(TWO), energy, harmonic=False)
+        refine(refined(TWO), energy=energy)
     assert np.isfinite(failure.value.residual)
     assert np.isfinite(failure.value.iterate.cosines).all()
 
@@ -282,15 +284,15 @@ def test_a_tolerance_below_rounding_is_said_to_be_missed():
 
 SEARCHES = {
     "frequencies": refine,
-    "amplitudes": lambda torus, **given: refine_at_amplitudes(torus, **{"amplitudes": torus.amplitudes} | given),
-    "energy": lambda torus, **given: refine_at_energy(torus, **{"energy": 0.02, "harmonic": False} | given),
+    "amplitudes": lambda torus, **given: refine(torus, **{"amplitudes": torus.amplitudes} | given),
+    "energy": lambda torus, **given: refine(torus, **{"energy": 0.02} | given),
 }
 WRONG_AMPLITUDES = ({}, {1: 0.1}, {1: 0.1, 2: 0.1}, {1: 0, 3: 0.1}, {1: 0.1, 3: "0.0"}, {1: 0.1, 3: "x"}, {1: 0.1, 3: float("nan")}, 1)
 WRONG_RATIOS = ({}, {1: 1}, {1: 1, 2: 1}, {1: 0, 3: 1}, {1: 1, 3: 0}, {1: 1, 3: "x"}, (1, 1), 2)
 WRONG = [
     *((search, "tolerance", x) for search in SEARCHES for x in (0, 1, -1e-13, float("nan"), float("inf"), "small", None)),
     *(("amplitudes", "amplitudes", x) for x in (*WRONG_AMPLITUDES, (0.1, 0.1))),
-    *(("energy", "energy", x) for x in (0, -1, "0", "x", float("nan"), float("inf"), None)),
+    *(("energy", "energy", x) for x in (0, -1, "0", "x", float("nan"), float("inf"))),
     *(("energy", name, x) for name in ("amplitude_ratio", "energy_ratio") for x in WRONG_RATIOS),
     ("energy", "energy_ratio", {1: 1, 3: -1}),
     *(("frequencies", "most_harmonics", x) for x in (0, 1.5, "many", True)),
@@ -305,7 +307,7 @@ def test_wrong_arguments_are_refused_by_name(search, name, value):
 
 def test_only_one_ratio_is_given():
     with pytest.raises(InputError, match=r"^energy_ratio .* only one of amplitude_ratio and energy_ratio"):
-        refine_at_energy(refined(TWO), 0.02, harmonic=False, amplitude_ratio={1: 1, 3: 1}, energy_ratio={1: 1, 3: 1})
+        refine(refined(TWO), energy=0.02, amplitude_ratio={1: 1, 3: 1}, energy_ratio={1: 1, 3: 1})
 
 
 def test_every_step_is_reported():
@@ -325,7 +327,7 @@ def test_a_diverging_series_is_cut_where_it_is_best():
     assert found.frequencies == torus.frequencies
     assert np.array_equal(found.harmonics, by_hand.harmonics)
     assert np.array_equal(found.cosines, by_hand.cosines)
-    same = refine_at_amplitudes(torus, {1: "0.3", 3: "0.2"})
+    same = refine(torus, amplitudes={1: "0.3", 3: "0.2"})
     assert [float(w) for w in same.frequencies] == pytest.approx([float(w) for w in found.frequencies], rel=LOW_ACCURACY)
 
 

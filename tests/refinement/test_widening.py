@@ -7,7 +7,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from symfpu import Chain, NoTorus, TorusTooLarge, refine, refine_at_amplitudes, torus_at_amplitudes
+from symfpu import Chain, NoTorus, TorusTooLarge, refine, torus_at_amplitudes
 from symfpu.refinement import search, widening
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated, neighbours
@@ -143,7 +143,7 @@ def guess():
 
 @pytest.mark.usefixtures("small_polytopes")
 def test_as_many_as_allowed_leave_a_doubt(guess):
-    torus = refine_at_amplitudes(guess, guess.amplitudes, most_harmonics=70)
+    torus = refine(guess, amplitudes=guess.amplitudes, most_harmonics=70)
     assert torus.verdict == "doubtful"
     assert len(torus.harmonics) == 70
     assert "most_harmonics=70" in torus.warnings[0]
@@ -160,7 +160,7 @@ def test_a_failure_with_more_harmonics_gives_the_best_torus_with_a_doubt(guess, 
         return found if calls[-1] < 120 else replace(found, failure="no way")
 
     monkeypatch.setattr(search, "newton", fails_with_many)
-    torus = refine_at_amplitudes(guess, guess.amplitudes)
+    torus = refine(guess, amplitudes=guess.amplitudes)
     assert ended_early(torus)
     assert "no way" in torus.warnings[0]
     assert len(torus.harmonics) == calls[-2] < 120 <= calls[-1]
@@ -174,7 +174,7 @@ def test_what_does_not_fit_into_memory_leaves_the_best_torus_with_a_doubt(guess,
             raise TorusTooLarge(chain.N, sizes.harmonics, 10, 1, 100)
 
     monkeypatch.setattr(search, "require_memory", small)
-    torus = refine_at_amplitudes(guess, guess.amplitudes)
+    torus = refine(guess, amplitudes=guess.amplitudes)
     assert torus.verdict == "doubtful"
     assert 50 < len(torus.harmonics) <= 100
     assert f"leave a residual of {torus.residual():.2g}" in torus.warnings[0]
@@ -183,4 +183,4 @@ def test_what_does_not_fit_into_memory_leaves_the_best_torus_with_a_doubt(guess,
 @pytest.mark.usefixtures("small_polytopes")
 def test_a_failure_with_the_first_ones_is_no_torus(guess):
     with pytest.raises(NoTorus, match="goes from"):
-        refine_at_amplitudes(guess, {1: "6", 2: "5"})
+        refine(guess, amplitudes={1: "6", 2: "5"})

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, FourierTorus, integrate, packet_state, refine, refine_at_amplitudes, refine_at_start, torus_near
+from symfpu import Chain, FourierTorus, integrate, packet_state, refine, torus_near
 from tests.tolerances import AT_THE_START, COMBINATION_HEIGHT, FALL_BY_AN_ANGLE
 
 pytestmark = pytest.mark.long
@@ -79,10 +79,10 @@ def test_up_to_six_angles_none_is_the_last_of_fig_9():
     for s in (4, 5, 6):
         if s < 6:
             guess = at_rest(torus_near(lines, range(1, s + 1)))
-            near = refine_at_amplitudes(guess, guess.amplitudes, most_harmonics=FEW)
+            near = refine(guess, amplitudes=guess.amplitudes, most_harmonics=FEW)
         else:
             near = with_mode_6(near)
-        near = refine_at_start(near, {q: float(start[q - 1]) for q in near.seeds}, most_harmonics=FEW)
+        near = refine(near, start={q: float(start[q - 1]) for q in near.seeds}, most_harmonics=FEW)
         left = np.abs(near.Q(0.0) - start) / start[0]
         assert left[:s].max() < AT_THE_START
         assert near.energy() == pytest.approx(0.014915, rel=10.0 ** (-s))

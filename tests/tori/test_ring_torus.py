@@ -179,8 +179,6 @@ TAKE_WAVES = {
     "pade_poles",
     "save",
     "refine",
-    "refine_at_amplitudes",
-    "refine_at_energy",
     "floquet",
 }
 TAKE_WAVES |= {"amplitude_history", "pade_amplitudes", "pade_frequencies"}

@@ -235,7 +235,7 @@ class TestWithFixedEnds(Asked):
         expected = solution.Q(TIMES).astype(float)
         assert np.abs(refined.Q(TIMES) - expected).max() < self.close * np.abs(expected).max()
         energy = 1.02 * float(solution.energy())
-        raised = symfpu.refine_at_energy(solution, energy, harmonic=False)
+        raised = symfpu.refine(solution, energy=energy)
         assert float(raised.energy()) == pytest.approx(energy, rel=FIXED_ENERGY)
 
     def test_multipliers_belong_to_one_angle(self, solution):

@@ -1,0 +1,267 @@
+"""What fixes one torus of s angles in its family: s numbers.
+
+Its frequencies, its amplitudes, an energy with s - 1 ratios, or the coordinates of its seeds at
+t = 0. Each gives the s conditions of Newton's method in doubles, and their values on a torus with
+digits.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from symfpu.chain.chain import Chain
+from symfpu.errors import InputError
+from symfpu.numbers.arithmetic import mpf
+from symfpu.numbers.long_doubles import long
+from symfpu.numbers.typed import Number, energy_of, exact
+from symfpu.refinement.conditions import (
+    Amplitude,
+    Condition,
+    Energy,
+    FrequencyShift,
+    Start,
+    ratio_conditions,
+)
+from symfpu.refinement.guesses import (
+    frequency_shifts,
+    moderate_by_seed,
+    numbers_by_seed,
+)
+from symfpu.series.arguments import frequencies_of
+from symfpu.tori.quasiperiodic import (
+    FourierTorus,
+    QuasiPeriodic,
+    amplitudes_of,
+    require_fixed_solution,
+)
+
+Exact = tuple[Fraction, ...]
+ByName = dict[str, Exact | None]
+
+
+class Prescribed(ABC):
+    """s exact numbers, in the order of the seeds, that fix a torus.
+
+    held_frequencies, held_amplitudes : what no step of Newton's method may change.
+    """
+
+    held_frequencies: Exact | None = None
+    held_amplitudes: Exact | None = None
+
+    @abstractmethod
+    def conditions(self) -> list[Condition]:
+        """The conditions of Newton's method in doubles, one for each angle."""
+
+    def values(self, torus: FourierTorus) -> list[Any]:
+        """What the conditions leave on a torus with digits, mpf, where nothing is held."""
+        raise NotImplementedError
+
+    def by_name(self) -> ByName:
+        """The numbers by what they are, as a file of the refinement keeps them."""
+        return {"frequencies": self.held_frequencies, "amplitudes": self.held_amplitudes}
+
+
+class Frequencies(Prescribed):
+    """omega of every seed of a chain."""
+
+    def __init__(self, chain: Chain, seeds: tuple[int, ...], frequencies: Exact) -> None:
+        self.chain, self.seeds = chain, seeds
+        self.held_frequencies = frequencies
+
+    def conditions(self) -> list[Condition]:
+        assert self.held_frequencies is not None
+        shifts = frequency_shifts(self.chain, self.seeds, self.held_frequencies)
+        return [FrequencyShift(place, shift) for place, shift in enumerate(shifts)]
+
+
+class Amplitudes(Prescribed):
+    """A of every seed."""
+
+    def __init__(self, amplitudes: Exact) -> None:
+        self.held_amplitudes = amplitudes
+
+    def conditions(self) -> list[Condition]:
+        assert self.held_amplitudes is not None
+        return [Amplitude(place, long(A)) for place, A in enumerate(self.held_amplitudes)]
+
+
+@dataclass(frozen=True)
+class AtEnergy(Prescribed):
+    """H, or the harmonic energy, with the ratio of amplitudes or of averaged mode energies."""
+
+    energy: Fraction
+    harmonic: bool
+    seeds: tuple[int, ...]
+    ratio: Exact
+    of_energies: bool
+
+    def conditions(self) -> list[Condition]:
+        energy = Energy(long(self.energy), self.harmonic)
+        ratio = {q: float(x) for q, x in zip(self.seeds, self.ratio, strict=True)}
+        return [energy, *ratio_conditions(self.seeds, ratio, energies=self.of_energies)]
+
+    def values(self, torus: FourierTorus) -> list[Any]:
+        energy = self._energy(torus) / mpf(self.energy) - 1
+        first, *others = self._shares(torus)
+        expected, *wanted = map(mpf, self.ratio)
+        pairs = zip(others, wanted, strict=True)
+        return [energy, *(own / first * (expected / ratio) - 1 for own, ratio in pairs)]
+
+    def _energy(self, torus: FourierTorus) -> Any:
+        """At the angles zero, or of the waves of a ring averaged over the angles."""
+        at_rest = replace(torus, phases={})
+        if not self.harmonic:
+            return at_rest.energy()
+        if torus.chain.periodic:
+            return torus.average_spectrum().sum()
+        return at_rest.harmonic_energies().sum()
+
+    def _shares(self, torus: FourierTorus) -> list[Any]:
+        """Of the seeds: their amplitudes, or their averaged energies."""
+        if not self.of_energies:
+            return list(torus.amplitudes.values())
+        spectrum = torus.average_spectrum()
+        modes = torus.chain.mode_numbers
+        return [spectrum[modes.index(q)] for q in torus.seeds]
+
+    def by_name(self) -> ByName:
+        kind = "harmonic energy" if self.harmonic else "energy"
+        ratio = "energy ratio" if self.of_energies else "amplitude ratio"
+        return {**super().by_name(), kind: (self.energy,), ratio: self.ratio}
+
+
+@dataclass(frozen=True)
+class AtStart(Prescribed):
+    """Q_q(0) of every seed. phases : of all seeds, (s,), radians."""
+
+    numbers: Exact
+    phases: tuple[Any, ...]
+
+    @property
+    def _size(self) -> Fraction:
+        return max(abs(x) for x in self.numbers)
+
+    def conditions(self) -> list[Condition]:
+        phases, size = tuple(map(float, self.phases)), float(self._size)
+        values = enumerate(self.numbers)
+        return [Start(place, long(x), phases, size) for place, x in values]
+
+    def values(self, torus: FourierTorus) -> list[Any]:
+        found = torus.Q(0.0)
+        pairs = zip(torus.seeds, self.numbers, strict=True)
+        return [(found[q - 1] - mpf(x)) / mpf(self._size) for q, x in pairs]
+
+    def by_name(self) -> ByName:
+        phases = tuple(exact(phase, "phases") for phase in self.phases)
+        return {**super().by_name(), "start": self.numbers, "phases": phases}
+
+
+def prescribed_by(
+    torus: QuasiPeriodic,
+    given: Mapping[str, Any],
+    *,
+    harmonic: bool,
+    ratios: Mapping[str, Mapping[int, Number] | None],
+) -> Prescribed:
+    """What was typed to fix a torus near a given one; nothing typed: its own frequencies.
+
+    given : frequencies, amplitudes, energy, start, as of `refine`, None where left out. ratios :
+    amplitude_ratio and energy_ratio. Raises InputError.
+    """
+    typed = {name: value for name, value in given.items() if value is not None}
+    if len(typed) > 1:
+        names = ", ".join(given)
+        raise InputError(
+            names, ", ".join(typed), "at most one of them", "leave the others out"
+        )
+    _require_flag(harmonic)
+    if "energy" in typed:
+        return _at_energy(torus, typed["energy"], harmonic=bool(harmonic), ratios=ratios)
+    _require_no_energy(harmonic, ratios)
+    if "amplitudes" in typed:
+        values = typed["amplitudes"]
+        by_seed = moderate_by_seed("amplitudes", values, torus.seeds, signed=True)
+        return Amplitudes(tuple(by_seed.values()))
+    if "start" in typed:
+        return _at_start(torus, typed["start"])
+    omega = tuple(torus.frequencies)
+    if "frequencies" in typed:
+        omega = frequencies_of(typed["frequencies"], torus.seeds)
+    return Frequencies(torus.chain, torus.seeds, omega)
+
+
+def _require_flag(harmonic: object) -> None:
+    if not isinstance(harmonic, (bool, np.bool_)):
+        allowed = "True for sum E_q, False for H"
+        raise InputError("harmonic", harmonic, allowed, "say which energy is meant")
+
+
+def _require_no_energy(
+    harmonic: bool, ratios: Mapping[str, Mapping[int, Number] | None]
+) -> None:
+    """InputError for what says more about an energy that was not given."""
+    typed = [name for name, ratio in ratios.items() if ratio is not None]
+    names = [*typed, "harmonic"] if harmonic else typed
+    if names:
+        value = True if names[0] == "harmonic" else ratios[names[0]]
+        raise InputError(names[0], value, "nothing without energy", "give energy, too")
+
+
+def _at_energy(
+    torus: QuasiPeriodic,
+    energy: Number,
+    *,
+    harmonic: bool,
+    ratios: Mapping[str, Mapping[int, Number] | None],
+) -> AtEnergy:
+    value = energy_of(energy)
+    of_energies = ratios["energy_ratio"] is not None
+    ratio = tuple(_ratio(torus, **ratios).values())
+    return AtEnergy(value, harmonic, torus.seeds, ratio, of_energies)
+
+
+def _ratio(
+    torus: QuasiPeriodic,
+    amplitude_ratio: Mapping[int, Number] | None,
+    energy_ratio: Mapping[int, Number] | None,
+) -> dict[int, Fraction]:
+    """The one that was given, by seed, or that of the amplitudes of the guess."""
+    if amplitude_ratio is not None and energy_ratio is not None:
+        allowed = "only one of amplitude_ratio and energy_ratio"
+        raise InputError("energy_ratio", energy_ratio, allowed, "leave one out")
+    if energy_ratio is not None:
+        _require_energies(torus)
+        return moderate_by_seed("energy_ratio", energy_ratio, torus.seeds, signed=False)
+    if amplitude_ratio is not None:
+        return moderate_by_seed(
+            "amplitude_ratio", amplitude_ratio, torus.seeds, signed=True
+        )
+    found = amplitudes_of(torus)
+    return {q: exact(float(a), "amplitude") for q, a in found.items()}
+
+
+def _require_energies(torus: QuasiPeriodic) -> None:
+    """InputError for opposite seeds of a ring, which have the same E_q."""
+    opposite = [q for q in torus.seeds if -q in torus.seeds]
+    if opposite:
+        allowed = "a ratio of modes of different energies: E_q = E_(-q) on a ring"
+        given = f"of the seeds {opposite[0]} and {-opposite[0]}"
+        raise InputError("energy_ratio", given, allowed, "give amplitude_ratio")
+
+
+def _at_start(torus: QuasiPeriodic, values: object) -> AtStart:
+    """A number for each seed, not all of them 0."""
+    require_fixed_solution(torus, "torus", "on a ring give amplitudes")
+    allowed = f"a number for each of the seeds {torus.seeds}, by seed"
+    numbers = numbers_by_seed("start", values, torus.seeds, allowed)
+    if not any(numbers.values()):
+        advice = "take the coordinates of an orbit that moves"
+        raise InputError("start", values, f"{allowed}, not all 0", advice)
+    phases = tuple(torus.phases[q] for q in torus.seeds)
+    return AtStart(tuple(numbers[q] for q in torus.seeds), phases)
