@@ -68,6 +68,18 @@ def refine_file(
     context: typer.Context,
     file: FileArgument,
     output: SolutionOption = None,
+    frequencies: Annotated[
+        str | None,
+        typer.Option(
+            help="The torus of these frequencies, one for each seed.", metavar="W,W,..."
+        ),
+    ] = None,
+    amplitudes: Annotated[
+        str | None,
+        typer.Option(
+            help="The torus of these amplitudes, one for each seed.", metavar="A,A,..."
+        ),
+    ] = None,
     energy: Annotated[
         str | None,
         typer.Option(
@@ -75,10 +87,10 @@ def refine_file(
         ),
     ] = None,
     harmonic: HarmonicOption = False,
-    amplitudes: Annotated[
+    start: Annotated[
         str | None,
         typer.Option(
-            help="The torus of these amplitudes, one for each seed.", metavar="A,A,..."
+            help="The torus whose seeds have these coordinates at t = 0.", metavar="Q,Q,..."
         ),
     ] = None,
     digits: DigitsOption = None,
@@ -107,41 +119,28 @@ def refine_file(
 ) -> None:
     """The torus that solves the equations of motion, by Newton's method.
 
-    It has the same frequencies, or a given energy or amplitudes.
+    It has the same frequencies, or given frequencies, amplitudes, energy or start.
     """
     places = optional("digits", digits)
-    if energy is not None and places is not None:
-        allowed = "frequencies or --amplitudes, which are met in all digits"
-        advice = "refine to the energy first, and the file that it writes to the digits"
-        raise InputError("energy", energy, f"with --digits {allowed}", advice)
     torus = solution_of(load(path_named("FILE", file)), file)
     picture = picture_named(plot)
     if checkpoint is not None and places is None:
         raise InputError("checkpoint", checkpoint, "one with --digits", "leave it out")
     run = None if checkpoint is None else path_named("checkpoint", checkpoint)
-    if energy is not None and amplitudes is not None:
-        raise InputError(
-            "amplitudes",
-            amplitudes,
-            "only one of --energy and --amplitudes",
-            "leave one out",
-        )
-    if harmonic and energy is None:
-        raise InputError(
-            "harmonic", True, "an --energy that it says something about", "give --energy E"
-        )
     kept = output_named(output)
-    how: dict[str, Any] = {"tolerance": number("tolerance", tolerance)}
-    how["most_harmonics"] = most_harmonics
+    given: dict[str, Any] = {
+        "frequencies": by_seed_or_none("frequencies", frequencies, torus.seeds),
+        "amplitudes": by_seed_or_none("amplitudes", amplitudes, torus.seeds),
+        "energy": energy,
+        "harmonic": harmonic,
+        "start": by_seed_or_none("start", start, torus.seeds),
+        "digits": places,
+        "file": run,
+        "tolerance": number("tolerance", tolerance),
+        "most_harmonics": most_harmonics,
+    }
     with progress_bar("Newton's method") as advance:
-        refined: RefinedTorus | PreciseTorus
-        if energy is not None:
-            refined = refine(
-                torus, energy=energy, harmonic=harmonic, progress=advance, **how
-            )
-        else:
-            given = ratio("amplitudes", amplitudes, torus.seeds)
-            refined = _found(torus, given, places, run, progress=advance, **how)
+        refined: RefinedTorus | PreciseTorus = refine(torus, **given, progress=advance)
         if kept:
             command = shlex.join(["symfpu", *context.obj])
             save(kept, refined, verdict=verdict_of(refined), command=command)
@@ -158,23 +157,6 @@ def refine_file(
         say_drawn(picture)
 
 
-def _found(
-    torus: Any,
-    amplitudes: dict[int, str] | None,
-    digits: int | None,
-    file: Path | None,
-    **how: Any,
-) -> RefinedTorus | PreciseTorus:
-    """Of the same frequencies, or of given amplitudes."""
-    found: RefinedTorus | PreciseTorus
-    how |= {"digits": digits, "file": file}
-    if amplitudes is None:
-        found = refine(torus, **how)
-    else:
-        found = refine(torus, amplitudes=amplitudes, **how)
-    return found
-
-
 def verdict_of(torus: RefinedTorus | PreciseTorus) -> dict[str, Any]:
     """What a file says of a refined torus."""
     if isinstance(torus, PreciseTorus):
@@ -182,7 +164,9 @@ def verdict_of(torus: RefinedTorus | PreciseTorus) -> dict[str, Any]:
     return {"verdict": torus.verdict, "reasons": list(torus.warnings)}
 
 
-def ratio(argument: str, text: str | None, seeds: tuple[int, ...]) -> dict[int, str] | None:
+def by_seed_or_none(
+    argument: str, text: str | None, seeds: tuple[int, ...]
+) -> dict[int, str] | None:
     """Numbers by seed, or None where the option is not given."""
     return None if text is None else by_seed(argument, text, seeds)
 
@@ -267,8 +251,8 @@ def follow_family(
             chosen,
             to_energy,
             harmonic=harmonic,
-            amplitude_ratio=ratio("amplitude-ratio", amplitude_ratio, chosen),
-            energy_ratio=ratio("energy-ratio", energy_ratio, chosen),
+            amplitude_ratio=by_seed_or_none("amplitude-ratio", amplitude_ratio, chosen),
+            energy_ratio=by_seed_or_none("energy-ratio", energy_ratio, chosen),
             from_energy=from_energy,
             members=whole("members", members),
             multipliers=multipliers,

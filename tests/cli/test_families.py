@@ -8,7 +8,16 @@ import pytest
 
 from symfpu import Chain, lindstedt, load, refine, save, solve_amplitudes
 from tests.cli.running import answer, refusal, run, shown
-from tests.tolerances import COMMANDED_RESIDUAL, CONDITION, FIXED_ENERGY, PROMISED_RESIDUAL, SHORT_SERIES, SMALL_DISTINCTION, TEN_ROUNDINGS
+from tests.tolerances import (
+    COMMANDED_RESIDUAL,
+    CONDITION,
+    FIXED_ENERGY,
+    PROMISED_RESIDUAL,
+    SHORT_SERIES,
+    SMALL_CHANGE,
+    SMALL_DISTINCTION,
+    TEN_ROUNDINGS,
+)
 
 FAMILY = split("family -N 8 --alpha 0.4 --beta 0.1 --seeds 3 --to-energy 0.05 --from-energy 0.01")
 
@@ -49,6 +58,13 @@ def test_refine_at_amplitudes(capsys, solved):
     assert record["residual"] < COMMANDED_RESIDUAL
 
 
+def test_refine_at_frequencies_and_at_a_start(capsys, solved):
+    record = answer(capsys, "refine", solved, "--frequencies", "0.39041,1.1118", "--tolerance", "1e-8")
+    assert record["frequencies"] == {"1": "0.39041", "3": "1.1118"}
+    started = answer(capsys, "refine", solved, "--start", "0.1,0.05", "--tolerance", "1e-8")
+    assert float(started["amplitudes"]["1"]) == pytest.approx(0.1, rel=SMALL_CHANGE)
+
+
 @pytest.mark.long
 def test_refine_to_digits(capsys, solved, tmp_path):
     """From a file of doubles, and on from the file of fewer digits."""
@@ -62,6 +78,8 @@ def test_refine_to_digits(capsys, solved, tmp_path):
     assert float(record["amplitudes"]["1"]) == 0.1
     assert load(more).torus.frequencies == load(fewer).torus.frequencies
     assert "in 22 digits" in shown(capsys, "show", more)
+    at_energy = answer(capsys, "refine", solved, "--digits", "20", "--energy", "0.004")
+    assert at_energy["energy"].startswith("0.00400000000000000000"[: len(at_energy["energy"])])
 
 
 def test_files_without_a_torus_are_refused(capsys, tmp_path):

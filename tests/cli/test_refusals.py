@@ -80,10 +80,10 @@ REFUSED = {
     f"{ONE} -q 1 --digits 20": "frequencies = ",
     f"{ONE} -q 1 -N M": "N = ",
     # refine
-    "refine FILE --energy 0.01 --digits 20": "energy",
+    "refine FILE --start 0,0": "start",
     "refine FILE --digits many": "digits",
     "refine FILE --harmonic": "harmonic",
-    "refine FILE --energy 0.01 --amplitudes 0.1,0.1": "amplitudes",
+    "refine FILE --energy 0.01 --amplitudes 0.1,0.1": "at most one of them",
     "refine FILE --amplitudes 0.1,x": "amplitudes",
     "refine FILE --energy=-1": "energy",
     "refine FILE --tolerance x": "tolerance",

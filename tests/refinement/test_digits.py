@@ -10,6 +10,7 @@ import symfpu
 from symfpu import BundleError, Chain, InputError, NoTorus, actions, load, refine, save, torus_at_amplitudes
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.digits import TorusProblem, guess_of
+from symfpu.refinement.prescribed import Frequencies
 from symfpu.refinement.refinement_file import no_file, whole, words
 from tests.oracles.oscillators import duffing
 from tests.tolerances import SPOILT_LEAST, SPOILT_MOST
@@ -156,7 +157,7 @@ def test_toda_has_the_energy_and_actions_of_the_spectral_curve():
 
 def test_a_wrong_digit_is_seen():
     torus = small(20)
-    guess = guess_of(torus, torus.frequencies, None)
+    guess = guess_of(torus, Frequencies(torus.chain, torus.seeds, torus.frequencies))
     with mpmath.workdps(40):
         problem = TorusProblem(guess, torus.harmonics, 20, unheard, no_file)
         before = problem.truncation()
@@ -170,7 +171,7 @@ def test_a_wrong_digit_is_seen():
 def test_the_bound_of_a_breather_sees_a_digit_in_the_thirtieth_place():
     orbit = symfpu.breather_at_amplitude(Chain(6, alpha="0.4", beta="0.2"), 5, "0.6")
     with mpmath.workdps(60):
-        guess = guess_of(orbit, orbit.frequencies, None)
+        guess = guess_of(orbit, Frequencies(orbit.chain, orbit.seeds, orbit.frequencies))
         problem = TorusProblem(guess, np.arange(61)[:, None], 30, unheard, no_file)
         iterative_refinement.converge(problem, 40, unheard)
         problem.coefficients[3, 4] += problem.largest >> 100

@@ -31,7 +31,7 @@ class Equations(Problem):
     def residual(self):
         return (self.MATRIX @ self.coefficients[:, 0] + self.COLUMN * self.frequencies[0] - (self.RIGHT << BITS))[:, None]
 
-    def solve(self, residual):
+    def solve(self, residual, conditions):
         columns = np.column_stack([self.MATRIX[:, 1:], self.COLUMN]).astype(float)
         change = -self.factor * np.linalg.solve(columns, residual[:, 0])
         return np.append(0.0, change[:-1])[:, None], change[-1:]
