@@ -143,7 +143,8 @@ def tangent_map_along(
         starts = np.arange(first, min(first + portion, count))
         times = h * np.add.outer(starts, inside).reshape(-1)
         slopes = bonds.stiffness(chain.law(), stretches(times))
-        carry_along(dx, dp, slopes, kicks, drifts, chain.periodic)
+        lengths = np.tile(kicks, len(starts))
+        carry_along(dx, dp, lengths[:, None] * slopes, drifts, chain.periodic)
     dx -= entry * dp
     rows = [_rows_of_lanes(chain, lanes, 2 * n) for lanes in (dx, dp)]
     return np.vstack([_undisplaced(chain, particles).T for particles in rows])

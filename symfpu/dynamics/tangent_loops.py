@@ -18,6 +18,7 @@ from symfpu.numbers.lanes import LANES, entry, put, total
 
 # least ratio of a diagonal entry of R to its column, above and below which the block changes
 LONGER_BLOCK, SHORTER_BLOCK = 1e-3, 1e-5
+TOGETHER = 32_768  # impulses that the second cache holds beside a block of deviations
 
 _ZERO, _ONE = np.uint64(0), np.uint64(1)
 _compiled = compiled(error_model="numpy")
@@ -120,18 +121,22 @@ def advance(
 
 
 @_compiled
-def carry_along(dx: Any, dp: Any, slopes: Any, kicks: Any, drifts: Any, ring: bool) -> None:
-    """Deviations under bonds of stiffness slopes[i, j] at the i-th kick, slopes (kicks in all, N).
+def carry_along(dx: Any, dp: Any, impulses: Any, drifts: Any, ring: bool) -> None:
+    """Deviations under bonds whose stiffness times the i-th kick is impulses[i]; (kicks, N).
 
-    kicks : of one step, drifts : after each of them, as lengths of time.
+    drifts : after each of the kicks of one step, as lengths of time.
+
+    A block of deviations goes through TOGETHER numbers of kicks before the next one does: it stays
+    in the first cache, and the impulses stay in the second.
     """
-    sites = np.uint64(dx.shape[1])
+    sites, kicks = np.uint64(dx.shape[1]), len(impulses)
     rows_x, rows_p = dx.reshape(-1, LANES), dp.reshape(-1, LANES)
-    for i in range(slopes.shape[0]):
-        stage = i % len(kicks)
-        stiffness, drift = kicks[stage] * slopes[i], drifts[stage]
+    portion = max(1, TOGETHER // impulses.shape[1])
+    for first in range(0, kicks, portion):
         for b in range(np.uint64(len(dx))):
-            move_lanes(rows_x, rows_p, b * sites, stiffness, drift, ring)
+            for i in range(first, min(first + portion, kicks)):
+                drift = drifts[i % len(drifts)]
+                move_lanes(rows_x, rows_p, b * sites, impulses[i], drift, ring)
 
 
 # loops, not expressions of arrays: those take seconds each to compile
