@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from symfpu.workbench.choice import Choice
-from symfpu.workbench.parts import DIVISORS, PICTURES, RESIDUALS, Bench, Numbers, Picture, Problem, Verdict
+from symfpu.workbench.parts import PICTURES, RESIDUALS, Bench, Numbers, Picture, Problem, Verdict
 
 pytestmark = pytest.mark.long
 RING = Choice(N="8", ends="periodic", seeds="1", values=("0.7656",), order="4")
@@ -25,8 +25,8 @@ def test_of_a_ring_everything_is_shown(choice):
     assert bench.file(choice).name == "torus.symfpu"
 
 
-@pytest.mark.parametrize(("refined", "left_out"), [(False, {RESIDUALS, DIVISORS}), (True, {RESIDUALS})])
-def test_of_a_ring_from_a_file_what_needs_a_series_says_so(refined, left_out, tmp_path):
+@pytest.mark.parametrize(("refined", "left_out"), [(False, set()), (True, {RESIDUALS})])
+def test_of_a_ring_from_a_file_what_needs_a_series_is_shown_or_says_so(refined, left_out, tmp_path):
     file = tmp_path / "ring.symfpu"
     file.write_bytes(Bench().file(replace(RING, refined=refined)).content)
     numbers, *others = Bench().parts(Choice(bundle=str(file)))
