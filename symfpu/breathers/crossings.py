@@ -27,6 +27,7 @@ DIRECTIONS, INVERSE_STEPS = (
     4,
 )  # in which an orbit is nearly degenerate, and how they are found
 PROBE = 0.02  # of the amplitude: the coefficient at which the cubic term is read off
+PROBE_ASIDE = 0.002  # the same at an orbit aside of the middle, with its own linearisation
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,6 +141,20 @@ def gap_ahead(start: Point, found: Point | None, place: int, distance: float) ->
         return None
 
 
+def gap_between(start: Point, found: Point, place: int) -> Gap | None:
+    """The resonance of a coefficient between two orbits, by both of them; None without one.
+
+    D is taken as linear between them; f and g are those at the start.
+    """
+    held, A = Held(start, place), start.amplitude
+    D, D_other = (held.divisor(point.linearised()) for point in (start, found))
+    if D * D_other >= 0:
+        return None
+    slope = (D_other - D) / (found.amplitude - A)
+    drive = -D * float(start.z[place])
+    return _measured(held, start.z, A, -D / slope, slope, drive, PROBE_ASIDE)
+
+
 def _centred(held: Held, z: Floats, begin: float, other: float) -> Gap | None:
     """The gap whose middle is found from a first guess of its amplitude, by secants."""
     A, D, slope = begin, np.nan, np.nan
@@ -154,16 +169,23 @@ def _centred(held: Held, z: Floats, begin: float, other: float) -> Gap | None:
         A, D = other, D_other
         ahead = -D / slope if slope else np.inf
         if abs(ahead) < CENTRE * abs(A):
-            return _measured(held, z, A, ahead, slope)
+            return _measured(held, z, A, ahead, slope, held.drive(z))
         other = A + float(np.clip(ahead, -0.1 * abs(A), 0.1 * abs(A)))
         if abs(other - begin) > FARTHEST * abs(begin):
             return None
     return None
 
 
-def _measured(held: Held, z: Floats, A: float, ahead: float, slope: float) -> Gap | None:
-    probe = PROBE * float(np.max(np.abs(z[:-1])))
-    drive, D = held.drive(z), -ahead * slope
+def _measured(
+    held: Held,
+    z: Floats,
+    A: float,
+    ahead: float,
+    slope: float,
+    drive: float,
+    aside: float = PROBE,
+) -> Gap | None:
+    probe, D = aside * float(np.max(np.abs(z[:-1]))), -ahead * slope
     forces = [held.drive(held.solved(z, A, c)) for c in (probe, -probe)]
     cubic = ((forces[0] - forces[1]) / 2 / probe - D) / probe**2
     if not cubic:
@@ -188,6 +210,19 @@ def beside(gap: Gap, amplitude: float) -> Floats:
     cubic = [gap.cubic, 0.0, held.divisor(held.linear), held.drive(z)]
     real = [c.real for c in np.roots(cubic) if abs(c.imag) <= 1e-9 * abs(c)]
     return held.solved(z, amplitude, float(min(real, key=abs)))
+
+
+def changed(start: Point, found: Point) -> Iterator[int]:
+    """Places of coefficients whose own divisor has another sign at the second orbit, then others.
+
+    The others are the suspects of both. Both orbits have the same unknowns.
+    """
+    pair = [point.balance.own_divisors(point.z) for point in (start, found)]
+    places = np.flatnonzero(pair[0] * pair[1] < 0).tolist()
+    yield from places
+    for place in suspects(start, found):
+        if place not in places:
+            yield place
 
 
 def suspects(start: Point, found: Point | None) -> Iterator[int]:

@@ -19,12 +19,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.equations import (
-    LARGEST_SYSTEM,
     ROUNDING_STEP,
     STEP,
     TAIL,
     Balance,
     relative_heights,
+)
+from symfpu.breathers.linearisation import (
+    MOST_UNKNOWNS,
+    NotDetermined,
+    linear_system,
+    weights,
 )
 from symfpu.errors import SymfpuError
 
@@ -40,6 +45,9 @@ LEAST_MOST, PER_BOND = (
     128,
     8,
 )  # harmonics that are taken, at most: a number, or so many a bond
+# accuracy of solutions of long chains, relative: of tangents, divisors, and corrections, which the
+# next one corrects
+OF_TANGENTS, OF_DIVISORS, OF_STEPS = 1e-13, 1e-7, 1e-4
 ANGLE = 0.3  # between tangents, in radians, from one point to the next
 NEAR = 0.1  # of a step: how far the point may be from the cubic's chord rule
 COMPARED = 1e-3  # of the largest coefficient: smaller ones are not compared one by one
@@ -49,9 +57,9 @@ COEFFICIENT = 0.25  # relative misfit of one coefficient
 class NotOnTheCurve(SymfpuError):
     """A point that a step found does not continue the curve. Ours.
 
-    point : what was found, or None. reason : why it is refused. crossing : whether the whole
-    solutions agree and the index alone has changed, by one. unresolved : whether it has more
-    harmonics than are taken.
+    point : what was found, or None. reason : why it is refused. crossings : by how much the index
+    has changed, where the whole solutions agree. unresolved : whether it has more harmonics than
+    are taken.
     """
 
     def __init__(
@@ -59,50 +67,38 @@ class NotOnTheCurve(SymfpuError):
         reason: str,
         point: Point | None,
         *,
-        crossing: bool = False,
+        crossings: int = 0,
         unresolved: bool = False,
     ) -> None:
         self.reason, self.point = reason, point
-        self.crossing, self.unresolved = crossing, unresolved
+        self.crossings, self.unresolved = crossings, unresolved
         super().__init__(reason)
 
 
 class Linearisation:
-    """The second variation of the action at fixed frequency, with the action's gradient, factored.
+    """The second variation of the action at fixed frequency, with the action's gradient.
 
     tangent : of the curve through z, of length 1 in the coefficients, the action rising. index :
     its negative eigenvalues.
     """
 
     def __init__(self, balance: Balance, z: Floats) -> None:
-        from scipy.linalg import lapack
-
-        _, jacobian = balance.system(z)
-        last = len(balance.n)
-        # norms of the cosines: the mean counts twice
-        self._weights = np.where(balance.n == 0, 2.0, 1.0)
-        matrix = np.zeros((last + 1, last + 1), order="F")
-        matrix[:last, :last] = self._weights[:, None] * jacobian[:, :-1]
-        matrix[last, :last] = balance.n**2 * z[:-1]
-        work, _ = lapack.dsytrf_lwork(last + 1, lower=1)
-        self._factors, self._pivots, info = lapack.dsytrf(
-            matrix, lower=1, lwork=int(work), overwrite_a=1
-        )
-        if info > 0:
-            raise NotOnTheCurve("the tangent is not determined", None)
-        self.index = self._negative()
-        self.tangent = self.solve(np.append(np.zeros(last), 1.0))
+        try:
+            self._system = linear_system(balance, z)
+        except NotDetermined as failure:
+            raise NotOnTheCurve(str(failure), None) from failure
+        self._weights = weights(balance)
+        self.index = self._system.index
+        along = np.append(np.zeros(len(balance.n)), 1.0)
+        self.tangent = self._system.solve(along, OF_TANGENTS)
         self.tangent /= np.linalg.norm(self.tangent[:-1])
 
     def solve(self, right: Floats) -> Floats:
         """The solution for one right-hand side or several, in columns."""
-        from scipy.linalg import lapack
-
-        solution, _ = lapack.dsytrs(self._factors, self._pivots, right, lower=1)
-        return np.asarray(solution)
+        return self._system.solve(right, OF_DIVISORS)
 
     def _particular(self, equations: Floats) -> Floats:
-        return self.solve(np.append(self._weights * equations, 0.0))
+        return self._system.solve(np.append(self._weights * equations, 0.0), OF_STEPS)
 
     def across(self, equations: Floats) -> Floats:
         """The change of z by which the equations have these values, across the tangent."""
@@ -113,16 +109,6 @@ class Linearisation:
         """The same without a change of one coefficient."""
         x = self._particular(equations)
         return np.asarray(x - self.tangent * (x[place] / self.tangent[place]))
-
-    def _negative(self) -> int:
-        """Negative eigenvalues, from the blocks of one and two on the diagonal of the factors."""
-        diagonal = self._factors.diagonal()
-        single = self._pivots > 0
-        firsts = np.flatnonzero(~single)[::2]
-        a, c = diagonal[firsts], diagonal[firsts + 1]
-        beside = self._factors[firsts + 1, firsts]
-        of_pairs = np.where(a * c < beside**2, 1, np.where(a < 0, 2, 0))
-        return int((diagonal[single] < 0).sum() + of_pairs.sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,7 +257,7 @@ def more_harmonics(point: Point) -> int:
     missing = np.log(10 * ends[1] / TAIL) / fall if fall > 0 else known
     harmonics = known + int(np.clip(1.2 * missing, max(4, known // 5), known))
     N = balance.chain.N
-    most = min(max(LEAST_MOST, PER_BOND * N), 2 * LARGEST_SYSTEM // (N - 1))
+    most = min(max(LEAST_MOST, PER_BOND * N), 2 * MOST_UNKNOWNS // (N - 1))
     if known >= most:
         still = f"the last of {known} harmonics is still {heights[-2:].max():.1g}"
         raise NotOnTheCurve(f"{still} of the largest", point, unresolved=True)
@@ -309,8 +295,7 @@ def require_agreement(start: Point, found: Point) -> None:
     change, turned = found.index - start.index, start.rise * found.rise < 0
     if abs(change) != int(turned):
         reason = f"the index goes from {start.index} to {found.index}"
-        crossing = abs(change) == 1
-        raise NotOnTheCurve(reason, found, crossing=crossing)
+        raise NotOnTheCurve(reason, found, crossings=abs(change))
 
 
 def disagreement(start: Point, found: Point) -> str:

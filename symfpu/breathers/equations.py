@@ -24,7 +24,7 @@ from symfpu.numbers.room import require_room
 Floats = NDArray[np.float64]
 # of z: what has to vanish, relative to what it is made of, and its derivatives
 Condition = Callable[[Floats], tuple[float, Floats]]
-LARGEST_SYSTEM = 8192  # unknowns; a matrix of 512 MB
+LARGEST_SYSTEM = 8192  # unknowns of a whole matrix; it has 512 MB
 TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonics may reach
 STEP = 1e-14  # relative Newton step that ends the iteration at once
 ROUNDING_STEP = 1e-9  # the one that ends it when it no longer shrinks
@@ -34,7 +34,7 @@ SMALL_BLOCK = 300  # coefficients of two harmonics, below which all are gathered
 GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or down
 NEARER = "start from a guess nearer to the orbit, such as an orbit of smaller amplitude"
 # of N^2 and of n^2 doubles that are alive at once
-TABLES_OF_MODES, MATRICES = 12, 3
+TABLES_OF_MODES, TABLES_OF_HARMONICS, MATRICES = 12, 6, 3
 
 
 class NoPeriodicOrbit(SymfpuError):
@@ -103,8 +103,9 @@ def mode_sums(N: int) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats]:
 
 def balance_bytes(N: int, harmonics: int) -> int:
     """What tables of pairs of modes, the matrix and its factors need at most."""
-    unknowns = (harmonics + 1) * N // 2
-    return 8 * (TABLES_OF_MODES * N**2 + MATRICES * unknowns**2)
+    unknowns = min((harmonics + 1) * N // 2, LARGEST_SYSTEM)
+    tables = TABLES_OF_MODES + TABLES_OF_HARMONICS * harmonics
+    return 8 * (tables * N**2 + MATRICES * unknowns**2)
 
 
 class Balance:
@@ -174,6 +175,69 @@ class Balance:
         J = self._coupling(slope)
         J[np.diag_indices_from(J)] += diagonal
         return self._equations(z, r), np.column_stack([J, self.n**2 * c])
+
+    def slopes(self, z: Floats) -> Floats:
+        """V'' - 1 of the bonds at the points of half a period, (points, N)."""
+        r = self._stretches(z)
+        return np.asarray(bonds.anharmonic_stiffness(self.chain.law(), r))
+
+    def image(self, slopes: Floats, z: Floats, change: Floats) -> Floats:
+        """What the equations change by with a change of the coefficients, sigma as it is.
+
+        slopes : of the orbit z.
+        """
+        table = np.zeros((self.harmonics + 1, self.chain.N - 1))
+        table[self.n, self.q] = change
+        moved = self.table[:, : self.harmonics + 1] @ table @ self.stretch
+        force = -(self.analysis @ (slopes * moved) @ self.stretch.T)
+        diagonal = self.detuning + self.n**2 * z[-1]
+        return np.asarray(diagonal * change + force[self.n, self.q])
+
+    def rows(
+        self, slopes: Floats, z: Floats, places: NDArray[np.intp]
+    ) -> tuple[Floats, Floats]:
+        """Derivatives of the equations at these places by all coefficients; and the diagonal.
+
+        slopes : of the orbit z. Shapes (places, n) and (n,).
+        """
+        by_modes = self._slopes_by_modes(slopes)
+        n, q = self.n, self.q
+        own = self.detuning + n**2 * z[-1]
+        diagonal = self._own_coupling(by_modes)
+        own_n, own_q = n[places][:, None], q[places][:, None]
+        rows = -(by_modes[np.abs(own_n - n), own_q, q] + by_modes[own_n + n, own_q, q])
+        rows[n[places] == 0] /= 2
+        rows[np.arange(len(places)), places] += own[places]
+        return np.asarray(rows), np.asarray(own + diagonal)
+
+    def _slopes_by_modes(self, slopes: Floats) -> Floats:
+        coefficients = self.analysis @ slopes
+        coefficients[1:] /= 2
+        return self._by_modes((coefficients @ self.products)[: 2 * self.harmonics + 1])
+
+    def _own_coupling(self, by_modes: Floats) -> Floats:
+        """Of the equations by their own coefficients: what the slopes add to the divisors."""
+        n, q = self.n, self.q
+        diagonal = -(by_modes[0, q, q] + by_modes[2 * n, q, q])
+        diagonal[n == 0] /= 2
+        return np.asarray(diagonal)
+
+    def own_divisors(self, z: Floats) -> Floats:
+        """Derivatives of the equations by their own coefficients, shape (n,)."""
+        coupling = self._own_coupling(self._slopes_by_modes(self.slopes(z)))
+        return np.asarray(self.detuning + self.n**2 * z[-1] + coupling)
+
+    def near_resonance(self, z: Floats, factor: float) -> NDArray[np.intp]:
+        """Places of coefficients with a divisor within a factor of the largest slope of a bond.
+
+        Divisors are relative to Omega_q^2. The seed's own coefficient is among them.
+        """
+        largest = _largest(self.slopes(z))
+        squares = self.chain.frequencies()[self.q] ** 2
+        divisors = np.abs(self.detuning + self.n**2 * z[-1]) / squares
+        near = divisors <= factor * largest
+        near[self.first] = True
+        return np.flatnonzero(near)
 
     def _coupling(self, slope: Floats) -> Floats:
         """Derivatives of the force by the unknowns.

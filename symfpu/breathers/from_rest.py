@@ -13,7 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.crossings import Gap, gap_ahead, landing, suspects
+from symfpu.breathers.crossings import (
+    Gap,
+    changed,
+    gap_ahead,
+    gap_between,
+    landing,
+    suspects,
+)
 from symfpu.breathers.curve import (
     Along,
     Linearisation,
@@ -35,6 +42,7 @@ from symfpu.breathers.equations import (
     held_amplitude,
     relative_heights,
 )
+from symfpu.breathers.linearisation import WHOLE
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 
@@ -44,6 +52,7 @@ FIRST_SHIFT = 1e-3  # of the frequency, relative: of the orbit from which steps 
 FIRST_STRETCH = 0.25  # of the bonds, at most, of the same
 LOWERINGS = 40  # halvings of that orbit's amplitude, until it continues the linear mode
 LONGEST, SHORTEST = 1.0, 1e-6  # steps, in units of the largest coefficient
+LONGEST_OF_MANY = 0.25  # with many unknowns: farther on there are more of them
 UNRESOLVED = 0.05  # the shortest step to an orbit that needs too many harmonics
 DOUBTFUL = 0.1  # a refused step of this length asks for a resonance
 AFTER_A_GAP = 0.1  # the step after a narrow gap
@@ -129,9 +138,12 @@ class FromRest:
         """Two points on the branch that leaves rest along the linear mode."""
         A = self._first_amplitude()
         failure: NoPeriodicOrbit | None = None
+        high: Point | None = None
         for _ in range(LOWERINGS):
+            low: Point | None = None
             try:
-                low, high = self._near_rest(A / 2), self._near_rest(A)
+                high = high or self._near_rest(A)
+                low = self._near_rest(A / 2)
                 if not (reason := _off(low, high, _index_at_rest(high.balance))):
                     return [low, high]
                 failure = NoPeriodicOrbit(high.balance, reason, high.z)
@@ -140,7 +152,7 @@ class FromRest:
                 failure = NoPeriodicOrbit(balance, error.reason, A * _seed_axis(balance))
             except NoPeriodicOrbit as error:
                 failure = error
-            A /= 2
+            A, high = A / 2, low
         assert failure is not None
         raise failure
 
@@ -190,7 +202,9 @@ class FromRest:
                 found, start = step_from(start, distance, bend, self._widened)
                 require_agreement(start, found)
             except NotOnTheCurve as refusal:
-                doubtful = refusal.crossing or self.length <= DOUBTFUL
+                if refusal.crossings and self._crossed(refusal, distance):
+                    return
+                doubtful = refusal.crossings == 1 or self.length <= DOUBTFUL
                 if doubtful and self._resonance(refusal.point, distance):
                     return
                 self.length /= 2
@@ -213,8 +227,10 @@ class FromRest:
         self._append(self._trimmed(found))
         self.iterations += found.iterations
         turned = float(np.linalg.norm(found.tangent[:-1] - start.tangent[:-1]))
+        longest = LONGEST if len(found.z) <= WHOLE else LONGEST_OF_MANY
         if turned < EASY * 0.3:
-            self.length = min(2 * self.length, LONGEST)
+            self.length = 2 * self.length
+        self.length = min(self.length, longest)
 
     def _trimmed(self, found: Point) -> Point:
         """A point without half of its harmonics or more, if they are rounding."""
@@ -257,6 +273,27 @@ class FromRest:
                     forward = float(start.tangent[start.balance.first])
                     self._note(gap, AVOIDED if gap.turns_back(forward) else FOLLOWED)
             elif self._passed(gap):
+                return True
+        return False
+
+    def _crossed(self, refusal: NotOnTheCurve, distance: float) -> bool:
+        """Whether a step of a long chain has passed narrow gaps alone, and its point is kept.
+
+        The whole solutions agree, and as many divisors change their sign as the index changes by.
+        Their gaps are measured from both sides: the orbits in their middles cost too much here.
+        """
+        start, found = self.points[-1], refusal.point
+        if found is None or len(start.z) <= WHOLE or len(start.z) != len(found.z):
+            return False
+        gaps: list[Gap] = []
+        for place in changed(start, found):
+            gap = gap_between(start, found, place)
+            if gap is not None and gap.width < NARROW:
+                gaps.append(gap)
+            if len(gaps) == refusal.crossings:
+                for each in gaps:
+                    self._note(each, PASSED)
+                self._add(start, found)
                 return True
         return False
 

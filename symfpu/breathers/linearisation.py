@@ -25,9 +25,6 @@ MOST_NEAR = (
     0.5  # of the unknowns near a resonance: with more, the whole matrix costs no more
 )
 MOST_UNKNOWNS = 40_000
-ACCURACY = (
-    1e-13  # of a solution, relative: residuals are corrected until then, or to rounding
-)
 MOST_CORRECTIONS = 40
 SHRINKS = 0.5  # a correction leaves less of the residual than this
 
@@ -83,8 +80,8 @@ class WholeMatrix:
         self._factors = Factors(matrix)
         self.index = self._factors.negative
 
-    def solve(self, right: Floats) -> Floats:
-        """The solution for one right-hand side or several, in columns."""
+    def solve(self, right: Floats, accuracy: float) -> Floats:
+        """The solution for one right-hand side or several, in columns; to rounding."""
         return self._factors.solve(right)
 
 
@@ -115,17 +112,20 @@ class NearResonances:
         self._factors = Factors(kept)
         self.index = self._factors.negative + int((self._diagonal < 0).sum())
 
-    def solve(self, right: Floats) -> Floats:
-        """The solution for one right-hand side or several, in columns."""
+    def solve(self, right: Floats, accuracy: float) -> Floats:
+        """The solution for one right-hand side or several, in columns.
+
+        accuracy : what may be left of the right-hand side, relative.
+        """
         if right.ndim == 2:
-            return np.column_stack([self.solve(column) for column in right.T])
+            return np.column_stack([self.solve(column, accuracy) for column in right.T])
         solution, left = np.zeros(len(right)), right
         size = before = float(np.abs(right).max())
         for _ in range(MOST_CORRECTIONS):
             solution = solution + self._nearly(left)
             left = right - self._times(solution)
             now = float(np.abs(left).max())
-            if now <= ACCURACY * size or now > SHRINKS * before:
+            if now <= accuracy * size or now > SHRINKS * before:
                 break
             before = now
         return solution

@@ -1,0 +1,54 @@
+"""The linearisation of long chains, whose far coefficients are eliminated, beside the whole matrix."""
+
+import numpy as np
+import pytest
+
+from symfpu import Chain, breather_at_amplitude, breather_at_energy, refine, torus_at_energy
+from symfpu.breathers.equations import Balance
+from symfpu.breathers.linearisation import NEAR_RESONANCE, NearResonances, WholeMatrix
+from tests.tolerances import PERIODIC_ORBIT, THOUSAND_ROUNDINGS
+
+CASES = (
+    (Chain(24, alpha="0.33"), 1, "0.6"),
+    (Chain(24, beta="0.5"), 3, "0.3"),
+    (Chain(16, potential="toda:1/2"), 2, "0.3"),
+    (Chain(24, alpha="0.2", beta="0.3"), 12, "0.1"),
+)
+
+
+@pytest.mark.parametrize(("chain", "seed", "amplitude"), CASES, ids=repr)
+def test_elimination_changes_neither_index_nor_solutions(chain, seed, amplitude):
+    orbit = breather_at_amplitude(chain, seed, amplitude)
+    balance = Balance(chain, seed, len(orbit.cosines) + 3)
+    z = balance.vector(orbit.cosines, orbit.sigma)
+    places = balance.near_resonance(z, NEAR_RESONANCE)
+    assert 0 < len(places) < len(z) - 1
+    whole, near = WholeMatrix(balance, z), NearResonances(balance, z, places)
+    assert near.index == whole.index
+    right = np.random.default_rng(1).standard_normal((len(z), 3))
+    expected, found = whole.solve(right, 0.0), near.solve(right, 0.0)
+    assert np.abs(found - expected).max() <= THOUSAND_ROUNDINGS * np.abs(expected).max()
+    rough = near.solve(right, 1e-4)
+    left = [np.abs(near._times(x) - b).max() / np.abs(b).max() for x, b in zip(rough.T, right.T, strict=True)]
+    assert max(left) <= 1e-4
+
+
+@pytest.mark.parametrize(("chain", "seed", "amplitude"), CASES, ids=repr)
+def test_own_divisors_are_the_diagonal(chain, seed, amplitude):
+    orbit = breather_at_amplitude(chain, seed, amplitude)
+    balance = Balance(chain, seed, len(orbit.cosines) - 1)
+    z = balance.vector(orbit.cosines, orbit.sigma)
+    _, jacobian = balance.system(z)
+    assert balance.own_divisors(z) == pytest.approx(np.diag(jacobian), abs=THOUSAND_ROUNDINGS)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("N", "energy"), [(64, "0.01"), (128, "0.0002")])
+def test_breathers_of_long_chains_are_those_of_the_invariance_equation(N, energy):
+    """From rest past narrow gaps, beside Newton's method from a series."""
+    chain = Chain(N, alpha="0.33")
+    breather = breather_at_energy(chain, 1, energy)
+    near = torus_at_energy(chain, (1,), energy, harmonic=False, order=8)
+    expected = refine(near, energy=energy)
+    assert breather.amplitude == pytest.approx(float(expected.amplitude), rel=PERIODIC_ORBIT)
+    assert float(breather.frequency) == pytest.approx(float(expected.frequency), rel=PERIODIC_ORBIT)
