@@ -70,7 +70,7 @@ ERRORS = {
     symfpu.NoTodaTorus: lambda: symfpu.NoTodaTorus((1, 2), (0.1, 3.0), 0.5),
     symfpu.NoRecurrence: lambda: symfpu.NoRecurrence(10.0, 0.5),
     symfpu.NoTwist: lambda: symfpu.NoTwist("Newton's matrix is singular"),
-    NotOnTheCurve: lambda: NotOnTheCurve("a reason", None, crossing=True),
+    NotOnTheCurve: lambda: NotOnTheCurve("a reason", None, crossings=1),
     symfpu.NotInFamily: lambda: symfpu.NotInFamily("H", 1.0, (0.1, 0.5), "ended"),
     NoFurtherMember: lambda: NoFurtherMember("no root", (1,), (0.4,), "a reason"),
     symfpu.NoTorus: lambda: symfpu.NoTorus("a reason", refined(), 0.1),

@@ -27,7 +27,6 @@ from symfpu.breathers.equations import (
 )
 from symfpu.breathers.linearisation import (
     MOST_UNKNOWNS,
-    NotDetermined,
     linear_system,
     weights,
 )
@@ -85,7 +84,7 @@ class Linearisation:
     def __init__(self, balance: Balance, z: Floats) -> None:
         try:
             self._system = linear_system(balance, z)
-        except NotDetermined as failure:
+        except np.linalg.LinAlgError as failure:
             raise NotOnTheCurve(str(failure), None) from failure
         self._weights = weights(balance)
         self.index = self._system.index

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.equations import LARGEST_SYSTEM, Balance
-from symfpu.errors import SymfpuError
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -27,10 +26,6 @@ MOST_NEAR = (
 MOST_UNKNOWNS = 40_000
 MOST_CORRECTIONS = 40
 SHRINKS = 0.5  # a correction leaves less of the residual than this
-
-
-class NotDetermined(SymfpuError):
-    """The matrix has no tangent: it is singular beyond the one direction. Ours."""
 
 
 class Factors:
@@ -47,7 +42,7 @@ class Factors:
             matrix, lower=1, lwork=int(work), overwrite_a=1
         )
         if info > 0:
-            raise NotDetermined("the tangent is not determined")
+            raise np.linalg.LinAlgError("the tangent is not determined")
         self.negative = self._negative()
 
     def solve(self, right: Floats) -> Floats:
@@ -152,7 +147,7 @@ def weights(balance: Balance) -> Floats:
 
 
 def linear_system(balance: Balance, z: Floats) -> WholeMatrix | NearResonances:
-    """K at the orbit z; NotDetermined where it is singular, or too large to be factored."""
+    """K at the orbit z; LinAlgError where it is singular, or too large to be factored."""
     if len(z) > WHOLE:
         places = balance.near_resonance(z, NEAR_RESONANCE)
         rows = len(places) * len(z)
@@ -160,5 +155,5 @@ def linear_system(balance: Balance, z: Floats) -> WholeMatrix | NearResonances:
             return NearResonances(balance, z, places)
     if len(z) > LARGEST_SYSTEM:
         size = f"{len(z)} unknowns with {len(places)} near a resonance"
-        raise NotDetermined(f"the matrix of {size} is too large")
+        raise np.linalg.LinAlgError(f"the matrix of {size} is too large")
     return WholeMatrix(balance, z)
