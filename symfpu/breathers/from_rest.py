@@ -336,11 +336,6 @@ def _name(gap: Gap) -> tuple[int, int]:
     return gap.harmonic, gap.mode
 
 
-def _about(point: Point, gap: Gap) -> bool:
-    """Whether the middle of a gap is near the amplitude of a point."""
-    return bool(abs(np.log(point.amplitude / gap.amplitude)) < 1 / 2)
-
-
 def _held(gap: Gap, amplitude: float) -> Along:
     first = gap.balance.first
     return lambda z, tangent: float((amplitude - z[first]) / tangent[first])

@@ -59,8 +59,8 @@ class Prescribed(ABC):
         """The conditions of Newton's method in doubles, one for each angle."""
 
     def values(self, torus: FourierTorus) -> list[Any]:
-        """What the conditions leave on a torus with digits, mpf, where nothing is held."""
-        raise NotImplementedError
+        """What the conditions leave on a torus with digits; 0 where their numbers are held."""
+        return [0] * len(torus.seeds)
 
     def by_name(self) -> ByName:
         """The numbers by what they are, as a file of the refinement keeps them."""
@@ -70,12 +70,13 @@ class Prescribed(ABC):
 class Frequencies(Prescribed):
     """omega of every seed of a chain."""
 
+    held_frequencies: Exact
+
     def __init__(self, chain: Chain, seeds: tuple[int, ...], frequencies: Exact) -> None:
         self.chain, self.seeds = chain, seeds
         self.held_frequencies = frequencies
 
     def conditions(self) -> list[Condition]:
-        assert self.held_frequencies is not None
         shifts = frequency_shifts(self.chain, self.seeds, self.held_frequencies)
         return [FrequencyShift(place, shift) for place, shift in enumerate(shifts)]
 
@@ -83,11 +84,12 @@ class Frequencies(Prescribed):
 class Amplitudes(Prescribed):
     """A of every seed."""
 
+    held_amplitudes: Exact
+
     def __init__(self, amplitudes: Exact) -> None:
         self.held_amplitudes = amplitudes
 
     def conditions(self) -> list[Condition]:
-        assert self.held_amplitudes is not None
         return [Amplitude(place, long(A)) for place, A in enumerate(self.held_amplitudes)]
 
 
