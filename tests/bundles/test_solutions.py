@@ -18,16 +18,20 @@ from symfpu import (
     refine,
     solve_amplitudes,
     toda,
-    unfold,
 )
 from symfpu.bundles.bundle import load, save
 from tests.bundles.test_bundle import opened, same
 from tests.bundles.test_bundle_damage import forged, numpy_file
+from tests.results import result
 from tests.tori.solutions import CASES
 
 
 def torus_entry(**changes):
     return lambda members, body: body["torus"].update(changes)
+
+
+def series_entry(**changes):
+    return lambda members, body: body["series"].update(changes)
 
 
 def made_entry(**changes):
@@ -38,13 +42,19 @@ def array(name, values):
     return lambda members, body: members.update({f"{name}.npy": numpy_file(values)})
 
 
+def without_harmonics(members, body):
+    members.pop("harmonics.npy")
+    body["arrays"].pop("harmonics")
+
+
 INFINITE = np.full((14, 7), np.inf).ravel()
-CHANGES = {
+OF_ORBITS = {
     "another class": (torus_entry(**{"class": "Chain"}), "no solution is of the class 'Chain'"),
     "another kind": (torus_entry(kind="sums"), "a torus of kind 'sums' without a series"),
     "no torus": (lambda members, body: body.update(torus=None), "a torus of kind None"),
     "negative frequency": (torus_entry(frequencies=["-1.1"]), "do not fit the seeds"),
     "two frequencies": (torus_entry(frequencies=["1.1", "1.2"]), "do not fit the seeds"),
+    "a frequency of code": (torus_entry(frequencies=["exit()"]), "is damaged"),
     "no phases": (torus_entry(phases=[]), "do not fit the seeds"),
     "seed outside": (torus_entry(seeds=[8]), "seeds"),
     "no harmonics": (torus_entry(harmonics=0), "harmonics = 0"),
@@ -55,31 +65,53 @@ CHANGES = {
     "steps": (made_entry(iterations=-1), "iterations"),
     "sigma": (made_entry(sigma="exit()"), "exit"),
 }
-
-
-@pytest.mark.parametrize("case", CHANGES)
-def test_forged_orbits_are_refused(case, tmp_path):
-    file = save(tmp_path / "orbit", CASES["PeriodicOrbit"]())
-    change, message = CHANGES[case]
-    forged(file, change)
-    with pytest.raises(BundleError, match=message):
-        load(file)
-
-
-DIGITS = {
+OF_DIGITS = {
     "no words": (torus_entry(words=0), "words = 0"),
     "many words": (torus_entry(words=10**15), "bytes where"),
     "bound": (made_entry(bound={"exact": "exit()"}), "is no binary number"),
 }
+OF_WAVES = {
+    "ends of a series": (series_entry(ends="fixed"), "is damaged"),
+    "seeds of a ring": (series_entry(seeds=[1, 4, -4]), "is damaged"),
+    "unit": (series_entry(unit="none"), "is damaged"),
+    "a ring of before": (series_entry(ring="travelling"), r"make it again: lindstedt\(chain"),
+}
+OF_RINGS = {
+    "ends of a torus": (torus_entry(ends="round"), "is damaged"),
+    "travels": (torus_entry(travels=1), "is damaged"),
+}
+OF_REFINED = {
+    "a coefficient less": (array("cosines", np.zeros(6)), "bytes where"),
+    "harmonics that are no integers": (array("harmonics", np.zeros(2)), "harmonics"),
+    "no member with harmonics": (without_harmonics, "harmonics"),
+    "no cosines": (lambda members, body: members.pop("cosines.npy"), "cosines"),
+    "a longer chain": (torus_entry(N=9), "bytes where"),
+    "an amplitude less": (torus_entry(amplitudes=["0.4"]), "is damaged"),
+    "a step of three numbers": (torus_entry(steps=[["1", "1", "1"]]), "is damaged"),
+    "negative products": (torus_entry(steps=[["1", "1", "1", -1]]), "is damaged"),
+}
+FORGED = {"PeriodicOrbit": OF_ORBITS, "PreciseTorus, breather": OF_DIGITS, "RefinedTorus": OF_REFINED}
+FORGED |= {"waves": OF_WAVES, "RefinedTorus, waves": OF_RINGS, "fixed": {"ends": (series_entry(ends="periodic"), "is damaged")}}
 
 
-@pytest.mark.parametrize("case", DIGITS)
-def test_forged_digits_are_refused(case, tmp_path):
-    file = save(tmp_path / "orbit", CASES["PreciseTorus, breather"]())
-    change, message = DIGITS[case]
+@pytest.mark.parametrize(("kind", "case"), [(kind, case) for kind, changes in FORGED.items() for case in changes])
+def test_forged_solutions_are_refused(kind, case, tmp_path):
+    file = save(tmp_path / "kept", results_to_forge(kind))
+    change, message = FORGED[kind][case]
     forged(file, change)
-    with pytest.raises(BundleError, match=message):
+    with pytest.raises(BundleError, match=message) as caught:
         load(file)
+    assert str(caught.value).startswith(f"{file} ")
+    assert "\n" not in str(caught.value)
+
+
+def results_to_forge(kind):
+    """A solution of tests/results.py or of tests/tori/solutions.py, or a series."""
+    if kind == "waves":
+        return waves()
+    if kind == "fixed":
+        return lindstedt(Chain(8, alpha="0.3"), (1,), ("0.392",), 2)
+    return CASES[kind]() if kind in CASES else result(kind)
 
 
 @pytest.mark.parametrize("name", ["PeriodicOrbit", "PreciseTorus"])
@@ -163,10 +195,6 @@ def waves(order=6, **law):
     return lindstedt(chain, (1, -3), OMEGA, order)
 
 
-def standing():
-    return unfold(solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1,), ("0.3903",), 4)))
-
-
 @pytest.mark.parametrize("law", [{"potential": "toda:1/2"}, {"beta": "1/3"}, {"alpha": "1/3", "beta": "-1/5"}])
 @pytest.mark.parametrize("order", [0, 1, 5])
 def test_series_come_back(law, order, tmp_path):
@@ -177,17 +205,9 @@ def test_series_come_back(law, order, tmp_path):
     assert np.array_equal(kept.frequency_terms(squares)[0], series.frequency_terms(squares)[0])
 
 
-def newton():
-    return refine(solve_amplitudes(waves(), phases={1: 0.3}))
-
-
-@pytest.mark.parametrize("made", [lambda: solve_amplitudes(waves(), phases={1: 0.3}), standing, newton])
-def test_tori_come_back(made, tmp_path):
-    torus = made()
-    bundle = load(save(tmp_path / "torus", torus))
-    assert same(bundle.torus, torus)
-    assert np.array_equal(bundle.torus.Q([0.0, 3.3]), torus.Q([0.0, 3.3]))
-    first = bundle.test_vectors[0]
+def test_test_vectors_of_waves_are_complex(tmp_path):
+    torus = solve_amplitudes(waves(), phases={1: 0.3})
+    first = load(save(tmp_path / "torus", torus)).test_vectors[0]
     assert [complex(Q) for Q in first.Q] == torus.Q(0.0).tolist()
     assert len(first.P) == torus.chain.N - 1
 
@@ -198,35 +218,6 @@ def test_the_ends_stand_in_the_file_of_a_ring_alone(tmp_path):
     fixed = lindstedt(Chain(8, potential="toda:1/2"), (1,), ("0.392",), 2)
     _, body = opened(save(tmp_path / "fixed", fixed))
     assert "ends" not in body["series"]
-
-
-def test_a_series_of_waves_in_the_format_before_is_refused_with_what_helps(tmp_path):
-    file = save(tmp_path / "waves", waves())
-    forged(file, lambda members, body: body["series"].update(ring="travelling"))
-    with pytest.raises(BundleError, match=r"make it again: lindstedt\(chain"):
-        load(file)
-
-
-LIES = {
-    "series": {"ends": "fixed", "seeds": [1, 4, -4], "order": 10**6, "frequencies": ["1"], "N": 3, "unit": "none"},
-    "torus": {"ends": "round", "seeds": [1], "harmonics": 10**9, "phases": ["0"], "frequencies": ["0", "1"], "travels": 1, "N": 1},
-}
-
-
-@pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, lies in LIES.items() for name in lies])
-def test_a_file_that_lies_is_refused(kind, name, tmp_path):
-    file = save(tmp_path / "waves", waves() if kind == "series" else newton())
-    forged(file, lambda members, body: body[kind].update({name: LIES[kind][name]}))
-    with pytest.raises(BundleError, match="is damaged") as caught:
-        load(file)
-    assert "\n" not in str(caught.value)
-
-
-def test_a_chain_with_fixed_ends_is_no_ring_whatever_its_file_says(tmp_path):
-    file = save(tmp_path / "fixed", lindstedt(Chain(8, alpha="0.3"), (1,), ("0.392",), 2))
-    forged(file, lambda members, body: body["series"].update(ends="periodic"))
-    with pytest.raises(BundleError, match="is damaged"):
-        load(file)
 
 
 @pytest.fixture(scope="module")
@@ -254,48 +245,6 @@ def test_frequencies_found_by_newtons_method_come_back_exactly(torus, tmp_path):
         warnings=(),
     )
     assert same(load(save(tmp_path / "odd", odd)).torus, odd)
-
-
-def test_its_test_vectors_are_the_torus(torus, file):
-    points = load(file).test_vectors
-    times = [float(point.t) for point in points]
-    assert len(times) == 3
-    assert torus.Q(times).tolist() == [list(map(complex, point.Q)) for point in points]
-    assert torus.P(times).tolist() == [list(map(complex, point.P)) for point in points]
-
-
-OF_REFINED = {
-    "a coefficient less": lambda m, b: m.update({"cosines.npy": numpy_file(np.zeros(b["torus"]["harmonics"] * 7 - 1))}),
-    "a coefficient more": lambda m, b: m.update({"cosines.npy": numpy_file(np.zeros(b["torus"]["harmonics"] * 7 + 1))}),
-    "numbers of another kind": lambda m, b: m.update({"cosines.npy": numpy_file(np.zeros(b["torus"]["harmonics"] * 7, "<f4"))}),
-    "harmonics that are no integers": lambda m, b: m.update({"harmonics.npy": numpy_file(np.zeros(b["torus"]["harmonics"] * 2))}),
-    "no harmonics": lambda m, b: (m.pop("harmonics.npy"), b["arrays"].pop("harmonics")),
-    "no cosines": lambda m, b: m.pop("cosines.npy"),
-    "another count": lambda m, b: b["torus"].update(harmonics=b["torus"]["harmonics"] - 1),
-    "a count of none": lambda m, b: b["torus"].update(harmonics=0),
-    "a huge count": lambda m, b: b["torus"].update(harmonics=10**15),
-    "a longer chain": lambda m, b: b["torus"].update(N=9),
-    "no coupling": lambda m, b: b["torus"].update(alpha="0", beta="0"),
-    "a seed outside": lambda m, b: b["torus"].update(seeds=[1, 8]),
-    "a seed less": lambda m, b: b["torus"].update(seeds=[1]),
-    "a frequency less": lambda m, b: b["torus"].update(frequencies=["0.4"]),
-    "a frequency of code": lambda m, b: b["torus"].update(frequencies=["exit()", "1"]),
-    "an amplitude less": lambda m, b: b["torus"].update(amplitudes=["0.4"]),
-    "a phase more": lambda m, b: b["torus"].update(phases=["0", "0", "0"]),
-    "a step of three numbers": lambda m, b: b["torus"].update(steps=[["1", "1", "1"]]),
-    "negative products": lambda m, b: b["torus"].update(steps=[["1", "1", "1", -1]]),
-    "another kind": lambda m, b: b["torus"].update(kind="other"),
-    "neither series nor torus": lambda m, b: b.update(torus=None),
-    "NaN": lambda m, b: m.update({"cosines.npy": numpy_file(np.full(b["torus"]["harmonics"] * 7, np.nan))}),
-    "no harmonic of a seed": lambda m, b: m.update({"harmonics.npy": numpy_file(np.full(b["torus"]["harmonics"] * 2, 7))}),
-    "a negative frequency": lambda m, b: b["torus"].update(frequencies=["-0.4", "1.1"]),
-}
-
-
-@pytest.mark.parametrize("case", OF_REFINED)
-def test_forged_tori_are_refused(case, file):
-    with pytest.raises(BundleError, match=f"^{file} "):
-        load(forged(file, OF_REFINED[case]))
 
 
 def test_what_a_later_version_adds_is_ignored(torus, file):
