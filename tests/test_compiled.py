@@ -224,11 +224,9 @@ class Own(Potential):
 """
 
 OF_A_USER = """
-from symfpu import Chain, alignment_indices, integrate, packet_state
+from symfpu import Chain, integrate, packet_state
 {}
-start = packet_state(chain, (1,), "0.3")
-print(*map(repr, integrate(chain, *start, 20, step=0.1).Q[-1].tolist()))
-print(*alignment_indices(chain, *start, 100).log10_gali[-1])
+print(*map(repr, integrate(chain, *packet_state(chain, (1,), "0.3"), 20, step=0.1).Q[-1].tolist()))
 """
 
 

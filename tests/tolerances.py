@@ -87,9 +87,6 @@ TERM_RATIO = 1e-3
 # Frequencies changed in their eleventh digit, with a divisor of 3e-5 among those of the series.
 ALIKE = 1e-3
 
-# Domb and Sykes' fit to ratios of doubles at order 150.
-SINGULARITY = 2e-6
-
 # Amplitudes to frequencies and back: both are solved to some hundred EPS of the shift, and the matrix between shifts and A^2 has
 # a condition of up to some ten.
 THERE_AND_BACK = 1e-12

@@ -87,14 +87,10 @@ def test_data_files_hold_what_the_pictures_show(cancellation, breather, tmp_path
     paths = write_panel_csv(convergence_figure(cancellation, breather), tmp_path)
     tables = {path.stem: rows_of(path) for path in paths}
     assert list(tables) == FILES
-    assert tables["convergence-a"][0] == ["k", *NAMES]
-    assert [[int(k), *map(float, values)] for k, *values in tables["convergence-a"][1:]] == [
-        [k, *(3 * 10.0**-k * scale for scale in (1, 2, 3, 4))] for k in range(2, 31, 2)
-    ]
-    assert tables["convergence-b"][0] == ["k", *NAMES]
-    assert [[int(k), *map(float, values)] for k, *values in tables["convergence-b"][1:]] == [
-        [k, *(0.5**k * scale for scale in (1, 2, 3, 4))] for k in range(31)
-    ]
+    for panel, orders, value in (("a", range(2, 31, 2), lambda k: 3 * 10.0**-k), ("b", range(31), lambda k: 0.5**k)):
+        header, *rows = tables[f"convergence-{panel}"]
+        assert header == ["k", *NAMES]
+        assert [[float(x) for x in row] for row in rows] == [[k, *(value(k) * scale for scale in (1, 2, 3, 4))] for k in orders]
     assert tables["convergence-c"] == [["order", "truncated", "resummed"], ["12", str(0.5**12), "1e-05"], ["30", str(0.5**30), "2e-07"]]
     assert tables["convergence-e"] == [["omega", "A", "A at the end of the series"], ["0.391", "0.75", "0.875"], ["0.393", "1.125", "1.25"]]
     assert tables["convergence-d"] == [["K", "A"], ["2", "1.5"], ["4", "1.4375"], ["10", "1.40625"], ["37", "1.3125"]]
