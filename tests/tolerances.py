@@ -557,9 +557,6 @@ RATE_OF_ORDERS = 0.3
 # That number for waves of amplitudes 0.17 and 0.12 on a ring of eight: two orders are (A Omega/2)^2 or so.
 TWO_ORDERS = 0.025
 
-# The coefficient of a Toda torus 2e-6 of omega_2 further: its slope of 0.66, relative to 1.2e-5, is a tenth.
-SMOOTH_SCAN = 0.15
-
 # A fitted pole whose coefficients are exact to EPS, from points some 1e-6 away: the background of second degree is exact too.
 SCAN_FIT = 1e-12
 

@@ -1,5 +1,6 @@
 """Programs that exported code needs: their path, or a test that is skipped with the package to install; strict compilers."""
 
+import ctypes
 import os
 import shutil
 import subprocess
@@ -32,6 +33,16 @@ def compile_c(folder, sources, *options, output="a.out"):
     run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert (run.returncode, run.stderr) == (0, "")
     return folder / output
+
+
+def library_of(folder, text):
+    """A file of C as a library for ctypes."""
+    return ctypes.CDLL(str(compile_c(folder, {"sample.c": text}, "-shared", "-fPIC", output="sample.so")))
+
+
+def pointer(values):
+    """What a function of C is given for an array, or for none."""
+    return None if values is None else ctypes.c_void_p(values.ctypes.data)
 
 
 def c_self_test(folder, text, *options, name="sample"):

@@ -3,6 +3,7 @@
 import ctypes
 import subprocess
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 
 import mpmath
@@ -12,7 +13,7 @@ import pytest
 from symfpu import Chain, FourierTorus, QTorus, lindstedt
 from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
-from tests.codegen.compilers import c_self_test, compile_c
+from tests.codegen.compilers import c_self_test, compile_c, library_of, pointer
 from tests.codegen.series_cases import OF_LARGEST, assert_close  # noqa: F401 (for other languages, too)
 from tests.tolerances import OF_TAIL
 
@@ -62,11 +63,15 @@ def program(torus, name="sample"):
 
 def call(library, name, t, phases, shape):
     values = np.full(shape, np.nan)
-    pointer = ctypes.c_void_p
-    held = None if phases is None else np.array(phases, dtype=float)
-    angle = None if held is None else pointer(held.ctypes.data)
-    getattr(library, name)(ctypes.c_size_t(len(t)), pointer(t.ctypes.data), angle, pointer(values.ctypes.data))
+    angles = None if phases is None else np.array(phases, dtype=float)
+    getattr(library, name)(ctypes.c_size_t(len(t)), pointer(t), pointer(angles), pointer(values))
     return values
+
+
+def at_rest():
+    """A torus of a chain that does not move."""
+    harmonics, cosines = np.zeros((1, 2), dtype=int), np.zeros((1, 4))
+    return FourierTorus(Chain(5, alpha=1), (1, 2), (Fraction(5, 8), Fraction(19, 16)), harmonics, cosines, {1: 0.0, 2: 0.0})
 
 
 @pytest.mark.long
@@ -75,7 +80,7 @@ def test_values_are_those_of_the_series_at_forty_digits(name, tmp_path):
     torus = case(name)
     draw = np.random.default_rng(5)
     t, modes = random_times(draw, 19), torus.chain.N - 1
-    library = ctypes.CDLL(str(compile_c(tmp_path, {"sample.c": C.torus(program(torus))}, "-shared", "-fPIC", output="sample.so")))
+    library = library_of(tmp_path, C.torus(program(torus)))
     for phases in (None, angles(draw, torus.seeds)):
         exact = torus if phases is None else replace(torus, phases=phases)
         given = None if phases is None else list(phases.values())
@@ -132,6 +137,4 @@ def test_two_files_in_one_program(tmp_path):
 
 
 def test_a_torus_at_rest(tmp_path):
-    chain, seeds = Chain(5, alpha=1), (1, 2)
-    rest = FourierTorus(chain, seeds, case("order 0").frequencies, np.zeros((1, 2), dtype=int), np.zeros((1, 4)), {1: 0.0, 2: 0.0})
-    assert c_self_test(tmp_path, C.torus(program(rest))).returncode == 0
+    assert c_self_test(tmp_path, C.torus(program(at_rest()))).returncode == 0

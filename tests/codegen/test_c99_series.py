@@ -12,10 +12,10 @@ import pytest
 
 from symfpu.codegen.languages.c import C
 from tests.codegen import series_cases
-from tests.codegen.compilers import c_self_test, compile_c
+from tests.codegen.compilers import c_self_test, compile_c, library_of, pointer
 from tests.codegen.series_cases import CASES, OF_TAIL, UNIVERSAL, assert_close, drawn, expected_orbit, numeric, program_of, universal
 
-TOO_SLOW_AS_STATEMENTS = {"high order", "beta, four seeds", "alpha, five seeds"}  # seconds of SymPy each
+TOO_SLOW_AS_STATEMENTS = {"high order", "mixed, three seeds", "beta, four seeds", "alpha, five seeds"}  # seconds of SymPy each
 
 NUMERIC = [*(("tables", name) for name in CASES), *(("statements", name) for name in CASES if name not in TOO_SLOW_AS_STATEMENTS)]
 EVERY = [*NUMERIC, *(("universal", name) for name in UNIVERSAL)]
@@ -46,15 +46,9 @@ def shared(tmp_path_factory):
 
     @functools.cache
     def shared(form, name):
-        folder = tmp_path_factory.mktemp("shared")
-        sources = {"sample.c": source_of(form, name)}
-        return ctypes.CDLL(str(compile_c(folder, sources, "-shared", "-fPIC", output="sample.so")))
+        return library_of(tmp_path_factory.mktemp("shared"), source_of(form, name))
 
     return shared
-
-
-def pointer(values):
-    return None if values is None else ctypes.c_void_p(values.ctypes.data)
 
 
 def orbit(library, case, times, amplitudes, phases, frequencies):

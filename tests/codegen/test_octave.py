@@ -6,13 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symfpu import Chain, FourierTorus
 from symfpu.codegen.languages.octave import BLOCK
 from symfpu.codegen.languages.octave import OCTAVE as LANGUAGE
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from tests.codegen.compilers import program
 from tests.codegen.series_cases import OF_LARGEST, assert_close
-from tests.codegen.test_c99 import CASES, angles, case, random_times
+from tests.codegen.test_c99 import CASES, angles, at_rest, case, random_times
 
 SHOW = """
 function show(varargin)
@@ -100,7 +99,7 @@ def test_values_shapes_and_self_tests_of_all_cases(tmp_path):
 
 
 def test_changed_coefficient_bad_arguments_and_rest(tmp_path):
-    torus, chain = case("alpha, one seed", digits=None), Chain(5, alpha=1)
+    torus = case("alpha, one seed", digits=None)
     text = source(torus, "broken")
     program = torus_program(torus, "broken", {})
     largest = max((float(c) for block in program.blocks for c in block.coefficients.flat), key=abs)
@@ -108,8 +107,7 @@ def test_changed_coefficient_bad_arguments_and_rest(tmp_path):
     assert repr(largest) in text[at:]
     (tmp_path / "broken.m").write_text(text[:at] + text[at:].replace(repr(largest), repr(largest * (1 + 1e-11)), 1))
     (tmp_path / "sample.m").write_text(source(torus))
-    rest = FourierTorus(chain, (1, 2), case("order 0").frequencies, np.zeros((1, 2), dtype=int), np.zeros((1, 4)), {1: 0.0, 2: 0.0})
-    (tmp_path / "still.m").write_text(source(rest, "still"))
+    (tmp_path / "still.m").write_text(source(at_rest(), "still"))
     script = ["refused('broken', 'self_test')", "refused('sample')", "refused('sample', 'selftest')", "refused('sample', ones(2, 2))"]
     script += ["refused('sample', 1i)", "refused('sample', 1, [1 2])", "refused('sample', {1})"]
     lines = octave(tmp_path, [*script, "still('self_test'); [Q, P, E, H] = still([1 2 3]); show(Q, P, E, H)"])

@@ -3,18 +3,17 @@
 import subprocess
 import sys
 from dataclasses import replace
-from fractions import Fraction
 
 import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, FourierTorus, lindstedt, solve_amplitudes
+from symfpu import Chain, lindstedt, solve_amplitudes
 from symfpu.codegen.languages.mpmath import MPMATH
 from symfpu.codegen.languages.numpy import NUMPY
 from symfpu.codegen.nested import nest
 from symfpu.codegen.torus_program import torus_facts, torus_program
-from tests.codegen.test_c99 import assert_close, case
+from tests.codegen.test_c99 import assert_close, at_rest, case
 from tests.codegen.test_python_series import module
 from tests.tolerances import HUNDRED_ROUNDINGS, SOURCE_OF_THIRTY
 
@@ -102,8 +101,6 @@ def test_nesting_keeps_every_coefficient(torus):
 
 @pytest.mark.parametrize("emitter", [NUMPY, MPMATH], ids=["numpy", "mpmath"])
 def test_a_torus_at_rest_stays_there(emitter, tmp_path):
-    seeds, frequencies = (1, 2), (Fraction(5, 8), Fraction(19, 16))
-    rest = FourierTorus(Chain(5, alpha=1), seeds, frequencies, np.zeros((1, 2), dtype=int), np.zeros((1, 4)), {1: 0.0, 2: 0.0})
-    loaded = module(source(rest, emitter), tmp_path / "my_torus.py")
+    loaded = module(source(at_rest(), emitter), tmp_path / "my_torus.py")
     assert [list(values) for values in loaded.orbit(2.5)] == [[0, 0, 0, 0]] * 2
     assert loaded.energy(2.5) == 0

@@ -12,7 +12,7 @@ from symfpu import Chain, InputError, export, lindstedt, save, solve_amplitudes
 from symfpu.cli.main import main
 from symfpu.codegen.export import LANGUAGES
 from tests.codegen import test_fortran
-from tests.codegen.compilers import c_self_test, compile_c
+from tests.codegen.compilers import c_self_test, library_of, pointer
 from tests.codegen.test_fortran_series import stopping
 from tests.codegen.test_octave import arrays, listed, octave
 from tests.codegen.test_python_series import module
@@ -71,19 +71,16 @@ def from_mpmath(name, folder):
     return *found, np.array(ours.corrected_by_frequencies(A, omega), dtype=float)
 
 
-def library_of(name, folder):
+def tested_library(name, folder):
+    """The library of a case, whose file has passed its own test."""
     text = source("c", name)
     run = c_self_test(folder, text)
     assert run.returncode == 0, run.stdout
-    return ctypes.CDLL(str(compile_c(folder, {"sample.c": text}, "-shared", "-fPIC", output="sample.so")))
-
-
-def pointer(values):
-    return ctypes.c_void_p(values.ctypes.data)
+    return library_of(folder, text)
 
 
 def from_c(name, folder):
-    library = library_of(name, folder)
+    library = tested_library(name, folder)
     A, phases, omega = given(name)
     Q, P, corrected, jacobian, dQ, dP, slopes = found = [np.full(x.shape, np.nan) for x in expected(name)]
     arguments = [ctypes.c_size_t(len(TIMES)), *map(pointer, (TIMES, A, phases, omega))]
@@ -181,7 +178,7 @@ def test_wrong_arguments_in_python(tmp_path):
 
 
 def test_wrong_arguments_in_c(tmp_path):
-    library = library_of("wrapped, cut", tmp_path)
+    library = tested_library("wrapped, cut", tmp_path)
     A, found = np.full(2, 0.1), np.full(6, 7.0)
     count = ctypes.c_size_t(1)
     assert library.sample_orbit_by_frequencies(count, pointer(A), pointer(A), None, None, pointer(found), pointer(found)) == 2

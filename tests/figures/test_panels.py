@@ -1,16 +1,16 @@
 """Panels, curves and pictures: what they refuse, how they are drawn, and which panels a family has."""
 
 from dataclasses import replace
-from functools import lru_cache
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from symfpu import Chain, InputError, family
+from symfpu import InputError
 from symfpu.figures.drawing import plot_panel, plot_spectrum, save_panel
 from symfpu.figures.family import draw_family
 from symfpu.figures.panels import Curve, Panel
+from tests.plots.cases import pair, unstable
 
 X = np.array([1.0, 2.0, 4.0])
 
@@ -90,17 +90,6 @@ def test_beads_differ_in_marker_and_keep_their_size(ax):
     assert len({line.get_marker() for line in lines}) == 7
     assert len({line.get_markersize() for line in lines}) == 1
     assert [line.get_linestyle() for line in lines] == ["-"] * 5 + ["--"] * 2  # where colours come round
-
-
-@lru_cache
-def unstable():
-    return family(Chain(6, beta=1), (5,), "3", from_energy="0.05", multipliers=True)
-
-
-@lru_cache
-def pair():
-    """A fold of omega_2 is on its way."""
-    return family(Chain(8, alpha="0.3"), (1, 2), "0.005", from_energy="0.001")
 
 
 @pytest.mark.long

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from symfpu import InputError
-from symfpu.figures.panels import Curve, Panel
+from symfpu.figures.panels import Curve
 from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY, Claim, PaperFigure, judged
 from symfpu.paper.claims_page import (
     claims_markdown,
@@ -16,14 +16,9 @@ from symfpu.paper.claims_page import (
     file_names,
     write_panel_csv,
 )
+from tests.figures.test_panels import X, panel
 
 pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
-
-X = np.array([1.0, 2.0, 4.0])
-
-
-def panel(*curves, **changes):
-    return replace(Panel("figXa", "Fig. X(a): test", r"$x$", r"$y$", curves, ("x_word", "y_word")), **changes)
 
 
 def claim(verdict=HOLDS, **changes):

@@ -29,22 +29,17 @@ def test_a_record_survives_json_without_losing_a_digit(torus):
     assert len(record["smallest_divisors"]) == len(torus.series.smallest_divisors)
 
 
-def test_the_evidence_has_a_line_for_some_orders(torus):
-    """The best and the last order are among them, with the numbers of the assessment."""
+def test_the_evidence_has_a_line_for_every_order_of_a_short_series(torus):
+    """With the numbers of the assessment."""
     assessment = assess(torus.series, torus)
-    *reasons, radii, head, zero, one, two, three, four = assessment_text(assessment).splitlines()
-    assert reasons == [f"  {reason}" for reason in assessment.reasons]
-    assert f"{assessment.radius:.3g} by ratio of terms" in radii
-    assert head.split()[:3] == ["order", "A_1(k)", "dA(k)"]
-    assert [line.split()[0] for line in (zero, one, two, three, four)] == list("01234")
+    *_, two, _, four = assessment_text(assessment).splitlines()
     term = assessment.terms[4]
-    assert f"{assessment.amplitudes[4][0]:.10g}" in four
-    assert f" {assessment.residuals[4]:.1e} " in four
-    assert f" {assessment.energy_errors[4]:.1e} " in four
-    assert four.endswith(f"{term.size:.1e}: {term.mode}, ({','.join(map(str, term.harmonic))}), {term.divisor:.1e}")
+    shown = (f"{assessment.amplitudes[4][0]:.10g}", f"{assessment.residuals[4]:.1e}", f"{assessment.energy_errors[4]:.1e}")
+    assert four.split()[0] == "4"
+    assert all(number in four for number in (*shown, f"{term.size:.1e}", f"{term.divisor:.1e}"))
     assert f"{max(assessment.differences[2]):.1e}" in two
     endless = assessment_text(replace(assessment, growth=0.0, pole_radius=float("inf")))
-    assert "inf by ratio of terms, no pole by Pade poles" in endless
+    assert "inf by ratio of terms, no pole" in endless
 
 
 def test_the_evidence_of_a_long_series_is_short_and_has_its_best_order(torus):

@@ -1,7 +1,6 @@
 """Sweeps: every case a row, whatever becomes of it; gone on with from its file and from no other."""
 
 import json
-import resource
 import threading
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from fractions import Fraction
@@ -9,7 +8,7 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from symfpu import Chain, FileFull, InputError, SweepStopped, excitation_sequence, prove_propagation, read_sweep, sweep
+from symfpu import Chain, InputError, SweepStopped, excitation_sequence, prove_propagation, read_sweep, sweep
 from symfpu.files.kept_lines import entry_of, line_of
 from symfpu.sweeps.rows_file import head_of
 from symfpu.sweeps.this_process import ThisProcess
@@ -209,23 +208,6 @@ def test_without_processes_a_row_is_kept_before_the_next_case_begins(tmp_path):
     swept = sweep(rows_so_far, TEN[:3], executor=ThisProcess(file=str(file)), file=file)
     assert [row.result for row in swept.rows] == [0, 1, 2]
     assert [row.failure.kind for row in sweep(square, [{"n": -1}], executor=ThisProcess()).rows] == ["InputError"]
-
-
-def test_a_full_disk_costs_no_row_that_is_written(tmp_path, threads):
-    """The limit of the size of a file, which the system tells as it tells a full disk."""
-    file, usual = tmp_path / "rows.jsonl", resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (600, usual[1]))
-    try:
-        with pytest.raises(FileFull, match="make room there") as caught:
-            sweep(square, [{"n": n} for n in range(100)], executor=threads, file=file)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
-    kept = read_sweep(file).rows
-    assert len(kept) == caught.value.rows > 2
-    assert file.read_bytes().endswith(b"}\n")
-    whole = sweep(square, [{"n": n} for n in range(100)], executor=threads, file=file)
-    assert {row.case["n"] for row in whole.rows} == set(range(100))
-    assert len(lines_of(file)) == 101
 
 
 class Counting(ThreadPoolExecutor):
