@@ -71,7 +71,7 @@ def from_mpmath(name, folder):
     return *found, np.array(ours.corrected_by_frequencies(A, omega), dtype=float)
 
 
-def tested_library(name, folder):
+def checked_library(name, folder):
     """The library of a case, whose file has passed its own test."""
     text = source("c", name)
     run = c_self_test(folder, text)
@@ -80,7 +80,7 @@ def tested_library(name, folder):
 
 
 def from_c(name, folder):
-    library = tested_library(name, folder)
+    library = checked_library(name, folder)
     A, phases, omega = given(name)
     Q, P, corrected, jacobian, dQ, dP, slopes = found = [np.full(x.shape, np.nan) for x in expected(name)]
     arguments = [ctypes.c_size_t(len(TIMES)), *map(pointer, (TIMES, A, phases, omega))]
@@ -178,7 +178,7 @@ def test_wrong_arguments_in_python(tmp_path):
 
 
 def test_wrong_arguments_in_c(tmp_path):
-    library = tested_library("wrapped, cut", tmp_path)
+    library = checked_library("wrapped, cut", tmp_path)
     A, found = np.full(2, 0.1), np.full(6, 7.0)
     count = ctypes.c_size_t(1)
     assert library.sample_orbit_by_frequencies(count, pointer(A), pointer(A), None, None, pointer(found), pointer(found)) == 2
