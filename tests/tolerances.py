@@ -91,7 +91,7 @@ ALIKE = 1e-3
 # a condition of up to some ten.
 THERE_AND_BACK = 1e-12
 
-# What a torus of a given energy promises, with some rounding of H.
+# What a torus of a given energy, or of a given ratio of energies, promises, with some rounding of H.
 FIXED_ENERGY = 1e-12
 
 # Amplitudes and energies of one exact torus by two solvers, or with two sets of harmonics: the twelve digits that are promised.
@@ -111,7 +111,7 @@ TEN_ROUNDINGS = 1e-14
 # Some hundred operations on numbers of order one, each rounded once, or so many sums in another order.
 HUNDRED_ROUNDINGS = 1e-13
 
-# Sums of a thousand terms in another order, and loops of a thousand steps, each rounded once.
+# Sums of a thousand terms in another order, loops of a thousand steps and products of matrices, each rounded once.
 THOUSAND_ROUNDINGS = 1e-12
 
 # Least squares with a condition of some 1e3, of data that are rounded once; twice, where the fits are fitted.
@@ -139,9 +139,6 @@ NEWTON_RESIDUAL = 1e-12
 
 # Energies and amplitudes that are conditions of Newton's method are met to the rounding of doubles.
 CONDITION = 1e-13
-
-# Ratios of energies are conditions too, of sums of squares of coefficients.
-FIXED_RATIO = 1e-12
 
 # What `refine` is asked for where few harmonics are to do, what its longest ones leave out, and what errors of that size change.
 LOW_ACCURACY = 1e-6
@@ -316,6 +313,7 @@ TWO_DIGITS = 0.02
 FOUR_DIGITS = 1e-3
 FIVE_DIGITS = 1e-4
 SEVEN_DIGITS = 1e-6
+EIGHT_DIGITS = 1e-7
 TWELVE_DIGITS = 5e-12
 ONE_PLACE = 0.05
 FOUR_PLACES = 1e-4
@@ -618,9 +616,6 @@ NORMAL_CONVERGED = 1e-12
 # The eigenfunction has the residual 1e-10, of which a hundred time units make as much as they are long times the frequency.
 NORMAL_VARIATION = 1e-8
 
-# Printed with six places.
-NORMAL_PRINTED = 1e-6
-
 # The multipliers of both routes: the integrated map's error of 1e-12, and some hundred EPS of the largest multiplier.
 NORMAL_MULTIPLIER = 1e-11
 
@@ -667,9 +662,6 @@ SQUEEZED, FREE = 1e-6, 1e-2
 # A frequency that proof and harmonic balance have of the same digits of A.
 SAME_FREQUENCY = 1e-15
 
-# A matrix made of bond sums against one made of samples in time, both of some hundred rounded products.
-SAME_DERIVATIVE = 1e-12
-
 # An onset by inverse interpolation of its discriminant: 1e-14 of D over its slope, some 0.02 an amplitude.
 ONSET = 1e-10
 
@@ -698,9 +690,6 @@ BESIDE_AN_ONSET = 1e-6
 # An amplitude beside a crossing where the modes can be told apart; the mean of both distances is of its square.
 BESIDE_A_CROSSING = 1e-3
 
-# numbers of a page, written with three or four digits
-THREE_DIGITS = 1e-3
-
 # Ratio of what two tori of small waves, one twice the other, miss of a normal frequency: the next
 # power is the fourth, at amplitudes of 0.02 a part of 1e-3.
 PHANTOM_WAVE = 1e-2
@@ -713,9 +702,6 @@ MAP_SHIFT = 1e-2
 
 # Two normal frequencies that are one at rest and differ on a torus: those of the tests by 2e-6 and more.
 SPLIT = 1e-6
-
-# What a torus in doubles leaves of the equations, by Newton's method: some 1e-16 a harmonic, over some hundred.
-TORUS_RESIDUAL = 1e-12
 
 # What a frame of eigenfunctions in doubles leaves of the linearised equations: 6e-15 to 9e-13 were met.
 FRAME_RESIDUAL = 1e-11
@@ -762,8 +748,6 @@ PLACES_OF_EXPONENTIALS = 1.1
 OF_DOUBLES = 1e-12
 # What a wave does not have, by 128 points of a function that is analytic: exp(-128) of it would be left, and fifty digits.
 NO_HARMONIC = 1e-20
-# A figure kept with eight digits.
-EIGHT_DIGITS = 1e-7
 # Forces by differences of neighbours in a ring of 1024: rounding of positions over Omega_1^2 = 4e-5, 1e-11; well beyond doubles' own.
 LEAST_BY_NEIGHBOURS, MOST_BY_NEIGHBOURS = 1e-13, 1e-9
 
@@ -780,6 +764,3 @@ KEPT_RATES = 0.05
 
 # Squares of logarithms of multipliers next to 1, where two pairs nearly meet: rounding of the torus and of the monodromy matrix.
 BESIDE_MULTIPLIER = 1e-12
-
-# Normal frequencies of doubles against digits, as promised of Fig. 1: measured 2e-16.
-NORMAL_PROMISED = 1e-12

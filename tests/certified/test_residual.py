@@ -12,7 +12,7 @@ from symfpu.certified.rounded_torus import polynomial_of, rounded_torus
 from symfpu.certified.series import Series, product
 from symfpu.reports.certified import residual_proof_text
 from tests.certified.tori import AMPLITUDES, entries, one_off, rational, torus, turned, value
-from tests.tolerances import ENERGY_OF_TORUS, TORUS_RESIDUAL
+from tests.tolerances import ENERGY_OF_TORUS, NEWTON_RESIDUAL
 
 LAWS = {"alpha": {"alpha": "0.3"}, "beta": {"beta": "1/2"}, "both": {"alpha": "1/3", "beta": "0.2"}}
 NEAR = 3  # times the largest residual on a grid: the bound is no more
@@ -61,7 +61,7 @@ def test_a_torus_with_one_coefficient_off_has_that_much_more_of_it():
     """(nu.omega)^2 - Omega^2 times the change, here of a harmonic where that is about 1."""
     change = 1e-6
     assert change / 10 < prove_residual(one_off(torus(), change)).bound < 10 * change
-    assert prove_residual(torus()).bound < TORUS_RESIDUAL
+    assert prove_residual(torus()).bound < NEWTON_RESIDUAL
 
 
 def energy_at(torus, a, b):

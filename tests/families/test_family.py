@@ -19,7 +19,7 @@ from tests import tolerances
 from tests.families.cases import ROUND
 from tests.oracles.oscillators import cubic_oscillator
 from tests.refusals import each, refused
-from tests.tolerances import FIXED_ENERGY, FIXED_RATIO, LAST_DIGIT, NEWTON_RESIDUAL, OSCILLATOR, RESONANCE_ENERGY, SAME_ORBIT
+from tests.tolerances import FIXED_ENERGY, LAST_DIGIT, NEWTON_RESIDUAL, OSCILLATOR, RESONANCE_ENERGY, SAME_ORBIT
 
 # A step of at most 0.6 in ln A, thus 1.2 in ln H, is halved eight times.
 STABILITY = 0.01
@@ -160,10 +160,10 @@ def averages(torus):
 def test_members_keep_the_ratio_asked_for(ratios):
     for m in family(Chain(6, beta="0.3"), (1, 3), "0.02", from_energy="0.01", **ratios).members:
         if "amplitude_ratio" in ratios:
-            assert m.amplitudes[3] / m.amplitudes[1] == pytest.approx(0.5, rel=FIXED_RATIO)
+            assert m.amplitudes[3] / m.amplitudes[1] == pytest.approx(0.5, rel=FIXED_ENERGY)
         else:
             mine = averages(m.torus)
-            assert mine[0] / mine[2] == pytest.approx(3, rel=FIXED_RATIO)
+            assert mine[0] / mine[2] == pytest.approx(3, rel=FIXED_ENERGY)
 
 
 @pytest.mark.long
@@ -377,11 +377,11 @@ def test_at_energy_is_on_the_family():
     """Not the ratio of the nearest member's amplitudes, which changes along a family of equal energies."""
     torus = member_at_energy(folded(), "0.02", harmonic=False)
     mine = averages(torus)
-    assert mine[0] == pytest.approx(mine[1], rel=FIXED_RATIO)
-    assert float(torus.energy()) == pytest.approx(0.02, rel=FIXED_RATIO)
+    assert mine[0] == pytest.approx(mine[1], rel=FIXED_ENERGY)
+    assert float(torus.energy()) == pytest.approx(0.02, rel=FIXED_ENERGY)
     assert torus.residual() < NEWTON_RESIDUAL
     harmonic = member_at_energy(folded(), "0.02", harmonic=True)
-    assert float(harmonic.harmonic_energies().sum()) == pytest.approx(0.02, rel=FIXED_RATIO)
+    assert float(harmonic.harmonic_energies().sum()) == pytest.approx(0.02, rel=FIXED_ENERGY)
     breather = member_at_energy(breathers(), "0.1", harmonic=False)
     assert breather.amplitudes[3] == pytest.approx(breather_at_energy(ROUND, 3, "0.1").amplitude, rel=SAME_ORBIT)
 
@@ -409,7 +409,7 @@ def test_a_frequency_may_have_several_members():
         assert float(torus.frequencies[1]) == pytest.approx(float(wanted), abs=LAST_DIGIT)
         averages = torus.average_spectrum()
         assert torus.residual() < NEWTON_RESIDUAL
-        assert averages[1] / averages[0] == pytest.approx(1, rel=FIXED_RATIO)
+        assert averages[1] / averages[0] == pytest.approx(1, rel=FIXED_ENERGY)
     assert tori[0].energy() < tori[1].energy()
     assert len(member_at_frequency(breathers(), 3, breathers().members[2].torus.frequencies[0])) == 1
 

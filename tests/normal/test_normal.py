@@ -13,7 +13,7 @@ from symfpu.normal.torus import second_order
 from symfpu.paper.starts import printed_row, printed_torus
 from tests import tolerances
 from tests.normal.cases import assert_multipliers, torus
-from tests.tolerances import GROWTH_OF_ORBIT, LAST_DIGIT, NORMAL_PRINTED, NORMAL_PROMISED, NORMAL_VARIATION, OBSERVED_ORDER, ROUNDING
+from tests.tolerances import GROWTH_OF_ORBIT, LAST_DIGIT, NORMAL_CONVERGED, NORMAL_VARIATION, OBSERVED_ORDER, ROUNDING, SIX_PLACES
 
 TODA = Chain(6, potential=toda("1/2"))
 HYPERBOLIC = (Chain(8, beta=1), {1: "0.1", 5: "0.7"})
@@ -99,7 +99,7 @@ def test_a_hyperbolic_torus_is_found_with_its_quartet():
     assert not found.stable
     by_mode = {mode.mode: mode for mode in found.modes}
     assert [q for q, mode in by_mode.items() if mode.growth] == [4, 6]
-    assert complex(by_mode[4].sigma) == pytest.approx(1.577380 + 0.035136j, abs=NORMAL_PRINTED)
+    assert complex(by_mode[4].sigma) == pytest.approx(1.577380 + 0.035136j, abs=SIX_PLACES)
     assert by_mode[6].growth == pytest.approx(by_mode[4].growth, rel=tolerances.NORMAL_MULTIPLIER)
     for mode in found.modes:  # Krein's form of an eigenvector whose conjugate is no partner vanishes
         assert mode.signature == 0
@@ -195,7 +195,7 @@ def test_frequencies_of_fig1_are_good_to_1e_12():
     for q in modes:
         mode = precise.mode(q)
         assert mode.error < LAST_DIGIT
-        assert abs(float(doubles.frequencies[q] / mode.sigma - 1)) < NORMAL_PROMISED
+        assert abs(float(doubles.frequencies[q] / mode.sigma - 1)) < NORMAL_CONVERGED
 
 
 @pytest.mark.long
