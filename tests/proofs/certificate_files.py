@@ -41,6 +41,13 @@ def places_of(value, place=()):
         yield from places_of(inner, (*place, key))
 
 
+def value_at(data, place):
+    """What stands at a place."""
+    for key in place:
+        data = data[key]
+    return data
+
+
 def altered(data, place, change):
     """A copy with what stands at a place changed by a function."""
     other = copy.deepcopy(data)
