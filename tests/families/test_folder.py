@@ -23,7 +23,7 @@ def alike(found, other):
     """Members bit for bit: tori, energies, residuals, multipliers; and the events."""
     assert len(found.members) == len(other.members)
     for m, n in zip(found.members, other.members, strict=True):
-        if isinstance(m.torus, RefinedTorus | RefinedTorus):
+        if isinstance(m.torus, RefinedTorus):
             assert same(m.torus, n.torus)
         else:
             assert same((m.torus.frequencies, m.torus.cosines), (n.torus.frequencies, n.torus.cosines))
