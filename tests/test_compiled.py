@@ -80,6 +80,16 @@ def test_a_read_only_installation_without_a_home_keeps_its_code_in_a_temporary_f
     assert {path: path.stat().st_mtime_ns for path in folder.rglob("*.nbc")} == made
 
 
+@pytest.mark.long
+def test_a_temporary_folder_that_others_can_write_to_is_not_used(installed):
+    planted = installed / "tmp" / f"symfpu-{os.getuid()}"
+    planted.mkdir()
+    planted.chmod(0o777)
+    finished = homeless(installed)
+    assert (finished.returncode, finished.stderr) == (0, "")
+    assert list(planted.iterdir()) == []
+
+
 @pytest.mark.parametrize("mode", [0o700, 0o770, 0o707])
 def test_a_temporary_folder_is_of_this_user_alone(tmp_path, monkeypatch, mode):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -214,9 +224,11 @@ class Own(Potential):
 """
 
 OF_A_USER = """
-from symfpu import Chain, integrate, packet_state
+from symfpu import Chain, alignment_indices, integrate, packet_state
 {}
-print(*map(repr, integrate(chain, *packet_state(chain, (1,), "0.3"), 20, step=0.1).Q[-1].tolist()))
+start = packet_state(chain, (1,), "0.3")
+print(*map(repr, integrate(chain, *start, 20, step=0.1).Q[-1].tolist()))
+print(*alignment_indices(chain, *start, 100).log10_gali[-1])
 """
 
 

@@ -35,7 +35,7 @@ BORROWED = {
     "normal": "action_angle chain dynamics refinement series",
     "numbers": "certified chain tori",
     "paper": "action_angle breathers dynamics figures",
-    "plots": "breathers sweeps",
+    "plots": "breathers notebook sweeps",
     "proofs": "algebra certified chain reports",
     "refinement": "borders numbers",
     "saved": "files",

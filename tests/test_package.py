@@ -3,6 +3,7 @@
 import ast
 import importlib
 import inspect
+import os
 import re
 import subprocess
 import sys
@@ -63,6 +64,19 @@ def test_the_stub_is_part_of_the_package():
     data = tomllib.loads((ROOT.parent / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]
     assert "*.pyi" in data["symfpu"]
     assert "py.typed" in data["symfpu"]
+
+
+@pytest.mark.long
+def test_type_checkers_know_the_types_of_public_names(tmp_path):
+    script = tmp_path / "user.py"
+    calls = "reveal_type(lindstedt(Chain(8, alpha=1), (1,)))"
+    script.write_text(f"from symfpu import Chain, lindstedt\n{calls}\n")
+    user = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    cache = Path(user) / "symfpu" / "mypy"  # that of the check of types in the Makefile
+    command = [sys.executable, "-m", "mypy", "--cache-dir", str(cache), str(script)]
+    finished = subprocess.run(command, capture_output=True, text=True, cwd=ROOT.parent)
+    assert 'Revealed type is "symfpu.series.series.LindstedtSeries"' in finished.stdout
+    assert finished.returncode == 0
 
 
 @pytest.mark.long

@@ -87,6 +87,9 @@ TERM_RATIO = 1e-3
 # Frequencies changed in their eleventh digit, with a divisor of 3e-5 among those of the series.
 ALIKE = 1e-3
 
+# Domb and Sykes' fit to ratios of doubles at order 150.
+SINGULARITY = 2e-6
+
 # Amplitudes to frequencies and back: both are solved to some hundred EPS of the shift, and the matrix between shifts and A^2 has
 # a condition of up to some ten.
 THERE_AND_BACK = 1e-12
@@ -555,6 +558,9 @@ RATE_OF_ORDERS = 0.3
 # That number for waves of amplitudes 0.17 and 0.12 on a ring of eight: two orders are (A Omega/2)^2 or so.
 TWO_ORDERS = 0.025
 
+# The coefficient of a Toda torus 2e-6 of omega_2 further: its slope of 0.66, relative to 1.2e-5, is a tenth.
+SMOOTH_SCAN = 0.15
+
 # A fitted pole whose coefficients are exact to EPS, from points some 1e-6 away: the background of second degree is exact too.
 SCAN_FIT = 1e-12
 
@@ -758,8 +764,8 @@ SAME_TORUS = 1e-12
 # Coordinates of seeds at t = 0 of tori with some thousand harmonics, each coefficient rounded.
 AT_THE_START = 1e-12
 
-# Rates of growth along the torus of five angles near Fig. 9's trajectory, by choices of 1700 and of 2500 harmonics: the fourth
-# differs by 4 %; with 2500 and 6000 it differs by 3.5e-2, the residuals being 3e-5 and 1.5e-6.
+# Rates of growth along the torus of five angles near Fig. 9's trajectory, with 2500 and more harmonics: the fourth differs by 3.5e-2
+# from that of 6000, the residuals being 3e-5 and 1.5e-6.
 KEPT_RATES = 0.05
 
 # Squares of logarithms of multipliers next to 1, where two pairs nearly meet: rounding of the torus and of the monodromy matrix.

@@ -18,6 +18,7 @@ from symfpu import (
     refine,
     solve_amplitudes,
     toda,
+    unfold,
 )
 from symfpu.bundles.bundle import load, save
 from tests.bundles.test_bundle import opened, same
@@ -73,25 +74,66 @@ OF_DIGITS = {
 OF_WAVES = {
     "ends of a series": (series_entry(ends="fixed"), "is damaged"),
     "seeds of a ring": (series_entry(seeds=[1, 4, -4]), "is damaged"),
+    "a high order": (series_entry(order=10**6), "is damaged"),
+    "a frequency less of a series": (series_entry(frequencies=["1"]), "is damaged"),
+    "a shorter ring": (series_entry(N=3), "is damaged"),
     "unit": (series_entry(unit="none"), "is damaged"),
     "a ring of before": (series_entry(ring="travelling"), r"make it again: lindstedt\(chain"),
 }
 OF_RINGS = {
     "ends of a torus": (torus_entry(ends="round"), "is damaged"),
+    "a seed less": (torus_entry(seeds=[1]), "is damaged"),
+    "a huge count": (torus_entry(harmonics=10**9), "is damaged"),
+    "a phase less": (torus_entry(phases=["0"]), "is damaged"),
+    "a frequency of zero": (torus_entry(frequencies=["0", "1"]), "is damaged"),
     "travels": (torus_entry(travels=1), "is damaged"),
+    "a ring of one": (torus_entry(N=1), "is damaged"),
 }
+
+
+def filled(name, value, more=0, kind="<f8"):
+    """An array of the right length, or longer, with one value at every place."""
+
+    def change(members, body):
+        entry = body["torus"]
+        width = entry["N"] - 1 if name == "cosines" else len(entry["seeds"])
+        members[f"{name}.npy"] = numpy_file(np.full(entry["harmonics"] * width + more, value, kind))
+
+    return change
+
+
+def one_less(members, body):
+    body["torus"]["harmonics"] -= 1
+
+
 OF_REFINED = {
-    "a coefficient less": (array("cosines", np.zeros(6)), "bytes where"),
-    "harmonics that are no integers": (array("harmonics", np.zeros(2)), "harmonics"),
+    "a coefficient less": (filled("cosines", 0.0, -1), "bytes where"),
+    "a coefficient more": (filled("cosines", 0.0, 1), "bytes where"),
+    "numbers of another kind": (filled("cosines", 0.0, kind="<f4"), "cosines"),
+    "NaN": (filled("cosines", np.nan), "no finite number"),
+    "harmonics that are no integers": (filled("harmonics", 0.0), "harmonics"),
+    "no harmonic of a seed": (filled("harmonics", 7, kind="<i8"), "harmonic"),
     "no member with harmonics": (without_harmonics, "harmonics"),
     "no cosines": (lambda members, body: members.pop("cosines.npy"), "cosines"),
+    "another count": (one_less, "bytes where"),
+    "a count of none": (torus_entry(harmonics=0), "harmonics = 0"),
+    "a huge count": (torus_entry(harmonics=10**15), "bytes where"),
     "a longer chain": (torus_entry(N=9), "bytes where"),
+    "no coupling": (torus_entry(alpha="0", beta="0"), "is damaged"),
+    "a seed outside": (torus_entry(seeds=[1, 8]), "seeds"),
+    "a seed less": (torus_entry(seeds=[1]), "is damaged"),
+    "a frequency less": (torus_entry(frequencies=["0.4"]), "numbers where 2 are due"),
+    "a frequency of code": (torus_entry(frequencies=["exit()", "1"]), "is damaged"),
+    "a negative frequency": (torus_entry(frequencies=["-0.4", "1.1"]), "not positive"),
     "an amplitude less": (torus_entry(amplitudes=["0.4"]), "is damaged"),
+    "a phase more": (torus_entry(phases=["0", "0", "0"]), "numbers where 2 are due"),
     "a step of three numbers": (torus_entry(steps=[["1", "1", "1"]]), "is damaged"),
     "negative products": (torus_entry(steps=[["1", "1", "1", -1]]), "is damaged"),
+    "another kind": (torus_entry(kind="other"), "a torus of kind"),
+    "neither series nor torus": (lambda members, body: body.update(torus=None), "a torus of kind None"),
 }
 FORGED = {"PeriodicOrbit": OF_ORBITS, "PreciseTorus, breather": OF_DIGITS, "RefinedTorus": OF_REFINED}
-FORGED |= {"waves": OF_WAVES, "RefinedTorus, waves": OF_RINGS, "fixed": {"ends": (series_entry(ends="periodic"), "is damaged")}}
+FORGED |= {"waves": OF_WAVES, "Newton of waves": OF_RINGS, "fixed": {"ends": (series_entry(ends="periodic"), "is damaged")}}
 
 
 @pytest.mark.parametrize(("kind", "case"), [(kind, case) for kind, changes in FORGED.items() for case in changes])
@@ -109,6 +151,8 @@ def results_to_forge(kind):
     """A solution of tests/results.py or of tests/tori/solutions.py, or a series."""
     if kind == "waves":
         return waves()
+    if kind == "Newton of waves":
+        return newton()
     if kind == "fixed":
         return lindstedt(Chain(8, alpha="0.3"), (1,), ("0.392",), 2)
     return CASES[kind]() if kind in CASES else result(kind)
@@ -205,9 +249,21 @@ def test_series_come_back(law, order, tmp_path):
     assert np.array_equal(kept.frequency_terms(squares)[0], series.frequency_terms(squares)[0])
 
 
-def test_test_vectors_of_waves_are_complex(tmp_path):
-    torus = solve_amplitudes(waves(), phases={1: 0.3})
-    first = load(save(tmp_path / "torus", torus)).test_vectors[0]
+def standing():
+    return unfold(solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1,), ("0.3903",), 4)))
+
+
+def newton():
+    return refine(solve_amplitudes(waves(), phases={1: 0.3}))
+
+
+@pytest.mark.parametrize("made", [lambda: solve_amplitudes(waves(), phases={1: 0.3}), standing, newton])
+def test_tori_of_rings_come_back(made, tmp_path):
+    torus = made()
+    bundle = load(save(tmp_path / "torus", torus))
+    assert same(bundle.torus, torus)
+    assert np.array_equal(bundle.torus.Q([0.0, 3.3]), torus.Q([0.0, 3.3]))
+    first = bundle.test_vectors[0]
     assert [complex(Q) for Q in first.Q] == torus.Q(0.0).tolist()
     assert len(first.P) == torus.chain.N - 1
 
@@ -245,6 +301,14 @@ def test_frequencies_found_by_newtons_method_come_back_exactly(torus, tmp_path):
         warnings=(),
     )
     assert same(load(save(tmp_path / "odd", odd)).torus, odd)
+
+
+def test_its_test_vectors_are_the_torus(torus, file):
+    points = load(file).test_vectors
+    times = [float(point.t) for point in points]
+    assert len(times) == 3
+    assert torus.Q(times).tolist() == [list(map(complex, point.Q)) for point in points]
+    assert torus.P(times).tolist() == [list(map(complex, point.P)) for point in points]
 
 
 def test_what_a_later_version_adds_is_ignored(torus, file):

@@ -65,7 +65,7 @@ def test_the_interrupt_key_while_a_class_is_made():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("delay", [0.0, 0.1, 0.3, 0.6, 1.0])
+@pytest.mark.parametrize("delay", [0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5])
 def test_the_interrupt_key_after_a_while(delay):
     begun = program(SOLVE, BEGUN)
     with subprocess.Popen(begun, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:

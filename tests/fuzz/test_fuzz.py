@@ -1,4 +1,4 @@
-"""10,000 calls of the public face and of the verbs with odd types and sizes: no raw error, no hang, no NaN without a word."""
+"""20,000 calls of the public face and of the verbs with odd types and sizes: no raw error, no hang, no NaN without a word."""
 
 import inspect
 import random
@@ -8,7 +8,7 @@ import pytest
 from symfpu import Chain
 from tests.fuzz import calls, commands, run, values
 
-PORTIONS, EACH = 4, 2500  # `make fuzz` makes twice as many
+PORTIONS, EACH = 8, 2500
 
 
 @pytest.mark.long

@@ -10,6 +10,7 @@ import pytest
 from symfpu import InputError, amplitude_history, lindstedt, periodic_orbit, solve_amplitudes
 from symfpu.paper.convergence_fig1 import (
     DETUNED_FREQUENCIES,
+    INCOMMENSURABLE_FREQUENCIES,
     SHOWN_ORDERS,
     _coincidence,
     cancellation_study,
@@ -31,7 +32,9 @@ from tests.tolerances import (
     SEQUENCE_LIMIT,
     SERIES_END,
     SEVEN_DIGITS,
+    SINGULARITY,
     SIX_PLACES,
+    SMALL_CHANGE,
     SUMMED_FIG1_FURTHER,
     TERM_RATIO,
     THERE_AND_BACK,
@@ -59,6 +62,11 @@ def breather():
     return lindstedt(FIG9_BREATHER.chain, FIG9_BREATHER.seeds, FIG9_BREATHER.frequencies, 150)
 
 
+def sizes(torus):
+    """mu^k S_2(k) of mode 1."""
+    return torus.series.absolute_sums(1, list(torus.amplitudes.values()), with_mu=True)[1]
+
+
 def heights(sums):
     """Largest sum of orders 10 .. 16, 17 .. 23 and 24 .. 30."""
     return [float(sums[first : first + 7].max()) for first in (10, 17, 24)]
@@ -78,6 +86,13 @@ def test_one_harmonic_grows_by_a_constant_ratio(torus):
         assert ratios[k] == pytest.approx(found[1] / found[0], rel=ROUNDING)
 
 
+def test_the_growth_is_the_pole_where_mode_3_meets_the_harmonic(torus):
+    """Mode 3 as a third seed of amplitude zero, with divisors of the harmonic: two routes to one number."""
+    pole = resonant_pole(torus)
+    assert 1 / pole == pytest.approx(RATIO, rel=TERM_RATIO)
+    assert 1 / pole == pytest.approx(growth_ratios(torus)[30], rel=TERM_RATIO)
+
+
 def test_at_the_pole_the_frequency_of_mode_3_is_that_of_the_harmonic(torus):
     """With amplitudes shrunk by sqrt(pole) the probe's own series sums to 4 omega_2 - 5 omega_1; its lowest term is Omega_3."""
     drive = 4 * torus.frequencies[1] - 5 * torus.frequencies[0]
@@ -89,6 +104,27 @@ def test_at_the_pole_the_frequency_of_mode_3_is_that_of_the_harmonic(torus):
     assert terms[1:, 2].sum() == pytest.approx(shift, rel=TERM_RATIO)
 
 
+@pytest.mark.parametrize(
+    ("frequencies", "digits"),
+    [(TWO_TORUS.frequencies, 40), (INCOMMENSURABLE_FREQUENCIES, 40), (INCOMMENSURABLE_FREQUENCIES, None)],
+    ids=str,
+)
+def test_neither_digits_nor_incommensurable_frequencies_change_how_amplitudes_settle(torus, frequencies, digits):
+    ours = amplitude_history(lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, frequencies, 14, digits=digits)).differences()
+    theirs = amplitude_history(torus.series).differences()
+    assert list(ours) == list(range(2, 13, 2))
+    for k, delta in ours.items():
+        assert delta == pytest.approx(theirs[k], rel=ALIKE)
+
+
+def test_printed_frequencies_grow_and_detuned_ones_fall(torus):
+    """omega_2 = 0.39056 makes one divisor eleven times larger: the terms of mode 1 fall to the last order."""
+    printed, detuned = heights(sizes(torus)), heights(sizes(torus_of(DETUNED_FREQUENCIES)))
+    assert printed == sorted(printed)
+    assert printed[2] > 3 * printed[1] > 3 * printed[0]
+    assert detuned[0] > 3 * detuned[1] > 9 * detuned[2]
+
+
 def test_detuning_moves_the_harmonic_to_the_other_side_of_mode_3():
     """Omega_3^2 - (4 omega_2 - 5 omega_1)^2 becomes 12.6 times larger, and negative."""
     linear = (2 * math.sin(3 * math.pi / 32)) ** 2
@@ -97,9 +133,24 @@ def test_detuning_moves_the_harmonic_to_the_other_side_of_mode_3():
     assert far / near == pytest.approx(-12.6309, rel=FIVE_DIGITS)
 
 
+def test_the_first_coincidence_of_the_printed_frequencies_is_far(torus):
+    first, second = (Fraction(w) for w in TWO_TORUS.frequencies)
+    n, m = _coincidence(torus.series)
+    assert (n, m) == (19523, -9813)
+    assert n * first + m * second == 0
+    assert math.gcd(n, m) == 1  # the smallest whole numbers with this ratio
+
+
 @pytest.mark.parametrize(("first", "second", "shortest"), [("0.4", "0.8", (2, -1)), ("1/3", "1/2", (3, -2)), ("0.6", "0.9", (3, -2))])
 def test_a_coincidence_is_in_lowest_terms(first, second, shortest):
     assert _coincidence(SimpleNamespace(frequencies=(Fraction(first), Fraction(second)))) == shortest
+
+
+def test_the_breathers_series_ends_in_a_square_root(breather):
+    end, spread, exponent = _singularity(breather)
+    assert end == pytest.approx(END, rel=SINGULARITY)
+    assert spread < SINGULARITY
+    assert exponent == pytest.approx(0.5, abs=SMALL_CHANGE)
 
 
 def test_roots_of_the_breather_fall_and_stay_above_the_end_of_the_series(breather):
@@ -143,10 +194,7 @@ def test_the_study_of_fig_1():
         for k, delta in variant.differences.items():
             if variant is not rounded and k <= 26:
                 assert delta == pytest.approx(printed.differences[k], rel=20 * ALIKE)
-    first, second, third = heights(printed.sums)
-    assert third > 3 * second > 3 * first
-    first, second, third = heights(detuned.sums)  # omega_2 = 0.39056 makes one divisor eleven times larger
-    assert first > 3 * second > 9 * third
+    assert heights(detuned.sums) == sorted(heights(detuned.sums), reverse=True)
     assert detuned.residuals.min() < printed.residuals.min() / 100
     assert [study.ratios[k] for k in (36, 38, 40, 42)] == pytest.approx([RATIO] * 4, rel=LATE_TERM_RATIO)
     assert 1 / study.pole == pytest.approx(RATIO, rel=TERM_RATIO)

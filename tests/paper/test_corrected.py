@@ -9,10 +9,10 @@ import pytest
 
 from symfpu import Chain, lindstedt, periodic_orbit, refine, solve_amplitudes
 from symfpu.paper import corrected, series_errors
-from symfpu.paper.corrected import HEAVY_ROWS, corrected_row, corrected_rows, left_out
+from symfpu.paper.corrected import HEAVY_ROWS, CorrectedRow, corrected_row, corrected_rows, left_out
 from symfpu.paper.corrected_page import corrected_line, corrected_record, corrected_text
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
-from symfpu.paper.series_errors import ScalingStudy, decay, scaling_study
+from symfpu.paper.series_errors import ScalingStudy, SeriesErrors, decay, scaling_study
 from tests.tolerances import CONVERGED_DIGITS, LAST_DIGIT, PROMISED_RESIDUAL, RATE_OF_MU, SLOPE, SMALL_CHANGE, TEN_ROUNDINGS, TWELVE_DIGITS
 
 BY_LABEL = {row.label: row for row in (TWO_TORUS, *APPENDIX_F)}
@@ -168,6 +168,10 @@ def test_a_decay_says_how_far_it_goes(errors, words):
     assert str(decay(errors)).startswith(words)
 
 
+def test_one_order_has_no_rate():
+    assert math.isnan(decay({2: 0.5}).factor)
+
+
 def test_a_rate_ignores_rounding():
     scales = (1.0, 0.5, 0.25, 0.125)
     given = {3: (1e-8, 1e-8 / 16, 1e-8 / 256, 5e-16), 4: (5e-16,) * 4}
@@ -229,9 +233,8 @@ def test_the_record_is_strict_json(two_rows, study):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("label", ["Fig. 2", "Fig. 5a", "Fig. 5c"])
+@pytest.mark.parametrize("label", [row.label for row in APPENDIX_F if len(row.seeds) > 2 and row.label not in HEAVY_ROWS])
 def test_the_series_tend_to_the_exact_tori(label):
-    """The smaller rows of three and four seeds; `symfpu reproduce table` has the others."""
     row = corrected_row(BY_LABEL[label])
     assert row.residual < PROMISED_RESIDUAL
     assert row.digits >= 10
@@ -239,3 +242,15 @@ def test_the_series_tend_to_the_exact_tori(label):
     assert given.rounding or given.last >= 0.9 * row.printed.order - 1
     assert solved.least < 1e-4
     assert min(row.errors.amplitudes.values()) < 1e-4
+
+
+def test_a_row_without_torus_has_no_numbers():
+    row = left_out(TWO_TORUS, "reason")
+    assert isinstance(row, CorrectedRow)
+    assert row.decays == row.energy_deviations == {}
+    assert corrected_line(row) == "  corrected: not refined: reason"
+
+
+def test_the_largest_deviation_is_named(breather):
+    row = replace(breather, deviations={1: 1e-9, 2: -3e-5}, errors=SeriesErrors({2: 0.5}, {1: 0.25}, {}))
+    assert row.verdict.startswith("printed amplitudes differ by up to 3.0e-05; the error of the series")

@@ -11,6 +11,7 @@ from symfpu import Chain, assess, lindstedt, solve_amplitudes
 from symfpu.paper.claims_page import write_panel_csv
 from symfpu.paper.fig1 import figure1_numbers, figure1_panels, figure1_text
 from symfpu.paper.fig1_data import Figure1
+from tests.tolerances import LAST_DIGIT
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +51,15 @@ def test_csv_files_hold_the_data_of_the_panels(torus, tmp_path):
     assert [float(row[2]) for row in tables["fig1d"][1:]] == data.errors[4][1].tolist()
 
 
+def test_figure_1_reads_its_evidence_from_the_verdict(torus):
+    """The class keeps no second copy of residuals, sums and differences."""
+    data = figure_of(torus)
+    assert data.residuals == {2: 0.5, 3: 0.375, 4: 0.25}
+    assert data.best_order == 4
+    assert data.differences == {2: (0.125, 0.0625)}
+    assert [s.tolist() for s in data.sums] == [[1.0, 0.5], [1.0, 0.25]]
+
+
 def test_page_and_record_have_the_claims_as_computed(torus, monkeypatch):
     monkeypatch.setattr("symfpu.paper.fig1_data.FIG1_CANCELLATION_ORDER", 1)
     data = figure_of(torus)
@@ -58,3 +68,13 @@ def test_page_and_record_have_the_claims_as_computed(torus, monkeypatch):
     assert (record["best_order"], record["rounding_of_doubles"], record["digits"]) == (4, 2.5e-13, None)
     assert record["claims"]["energy_error"]["computed"] == "1.0e-02 at order 4, 1.0e-03 at order 24"
     assert record["assessment"]["verdict"] == "asymptotic, best at order 4"
+
+
+def test_errors_in_time_are_drawn_as_moduli_after_the_start(torus):
+    data = figure_of(torus)
+    *_, panel = figure1_panels(data)
+    harmonic, total = panel.curves[:2]
+    assert harmonic.y.tolist() == [1e-3, 2e-3, 0.1]
+    assert total.y.tolist() == pytest.approx([1e-4, 2e-4, 1e-2], rel=LAST_DIGIT)
+    assert all(min(curve.x) > 0 for curve in panel.curves)
+    assert [curve.group for curve in panel.curves] == [0, 0, 1, 1]

@@ -59,8 +59,8 @@ def test_a_spectrum_persists_from_a_hundredth_of_the_time_on(decades, verdict):
 
 @pytest.mark.long
 def test_figure_3_over_a_short_time(monkeypatch, tmp_path):
-    """1e4, in place of 1e6: the first stage is over by then."""
-    monkeypatch.setattr(fig3, "TIME", 1e4)
+    """2e4, in place of 1e6: the first stage is over by then."""
+    monkeypatch.setattr(fig3, "TIME", 2e4)
     figure = fig3.figure3(tmp_path, unheard)
     a, b = figure.panels
     assert [a.name, b.name] == ["fig3a", "fig3b"]

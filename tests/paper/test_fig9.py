@@ -129,13 +129,12 @@ def test_the_kept_torus_of_five_angles_starts_where_the_trajectory_does():
 
 @pytest.mark.long
 def test_more_harmonics_change_neither_rates_nor_the_dimension_that_is_foretold():
-    """Than 1700: the kept torus has 2500."""
     torus, start = five_angles(), start_of_the_trajectory()
-    coarser = refine(torus, start={q: float(start[q - 1]) for q in torus.seeds}, most_harmonics=1700)
-    assert torus.residual() < coarser.residual() / 1.5
-    rates, other = (growth_rates(flow_of(one))[:4] for one in (torus, coarser))
+    finer = refine(torus, start={q: float(start[q - 1]) for q in torus.seeds}, most_harmonics=4000)
+    assert finer.residual() < torus.residual() / 2
+    rates, other = (growth_rates(flow_of(one))[:4] for one in (torus, finer))
     assert rates == pytest.approx(other, rel=KEPT_RATES)
-    for one in (torus, coarser):
+    for one in (torus, finer):
         assert foretold_dimension(TorusForecast(one, 7).frames(), FULL_TIME).value == 4
 
 

@@ -133,9 +133,7 @@ def test_products_by_both_formulas():
 
 
 @pytest.mark.long
-def test_frequencies_and_terms_as_they_are(monkeypatch):
-    """Of the two lower energies; `make verdicts` has the third, too."""
-    monkeypatch.setattr(claims, "MAP_ENERGIES", claims.MAP_ENERGIES[:2])
+def test_frequencies_and_terms_as_they_are():
     number = claims.number_claim(claims.numbers_of_frequencies())
     assert (number.verdict, "by frequency analysis" in number.ours) == (HOLDS, True)
     assert claims.terms_claim(claims.numbers_of_terms()).verdict == HOLDS

@@ -134,6 +134,14 @@ def test_lines_have_every_step_at_work_and_the_part_never_falls(clock, heard):
     assert 0.0 <= parts[0] < parts[-1] < 1.0
 
 
+def test_one_target_alone_counts_no_others(clock, heard):
+    left = left_of({"a": 10.0}, 1, heard, clock)
+    left.of("a")("a: orbit", math.nan)
+    clock.now += 5.0
+    left.of("a")("a: orbit", 0.5)
+    assert heard == [("a: orbit", 0.0), ("a: orbit (50%)", 0.5)]
+
+
 def test_silent_steps_do_not_stop_the_time_left(clock, heard):
     left = left_of({"a": 10.0}, 1, heard, clock)
     told = threading.Event()

@@ -78,6 +78,28 @@ def test_printed_third_set_of_example_4_repeats_the_first():
     assert set(span(56, 72)) - set(span(60, 68)) <= set(sequence[3])
 
 
+def around(N, center, width):
+    return {q for q in range(center - width, center + width + 1) if 0 < q < N}
+
+
+@pytest.mark.parametrize(("N", "w"), [(128, 2), (256, 4), (64, 0)])
+@pytest.mark.parametrize("quarter", [1, 2, 3])
+def test_patterns_around_quarters(N, w, quarter):
+    """Section 6.3: M_k of packets around kappa_0 = 1/4, 1/2, 3/4, exactly, for half-widths w in modes."""
+    M = reachable_modes(N, around(N, quarter * N // 4, w), 6)
+    for k in range(1, 7):
+        width = w * (k + 1)
+        low, middle, high = around(N, 0, width), around(N, N // 2, width), around(N, N, width)
+        quarters = around(N, N // 4, width) | around(N, 3 * N // 4, width)
+        if quarter == 2:
+            expected = low | high if k % 2 else middle
+        elif k == 1:
+            expected = low | middle
+        else:
+            expected = low | middle | high if k % 2 else quarters
+        assert set(M[k]) == expected
+
+
 @pytest.mark.parametrize("N", range(2, 61))
 def test_linear_frequencies_are_incommensurable_for_primes_and_powers_of_two(N):
     """The paper has 'N-1 prime'; exactly, it is N that must be prime (or a power of two)."""

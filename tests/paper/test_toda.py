@@ -17,8 +17,10 @@ from symfpu.paper.toda_fig1 import (
     _pole_of,
     _residue,
     chains_of,
+    detuning,
     refined_two_torus,
     resonance_scan,
+    resonant_coefficient,
     series_study,
     toda_resonance,
 )
@@ -36,6 +38,7 @@ from tests.tolerances import (
     SCAN_FIT,
     SERIES_END,
     SIX_PLACES,
+    SMOOTH_SCAN,
     TERM_RATIO,
 )
 
@@ -76,6 +79,21 @@ def test_the_torus_of_toda_exists_although_its_series_diverges(torus):
     assert float(torus.energy()) == pytest.approx(TODA_ENERGY, rel=10 * ROUNDING)
 
 
+def test_toda_s_torus_passes_its_resonance(chains):
+    """On both sides of it the detuning changes its sign, and the coefficient hardly changes."""
+    second = ("0.390472", "0.390474")
+    below, above = (detuning(chains["Toda"], omega) for omega in second)
+    assert below > 0 > above
+    lower, upper = (resonant_coefficient(refined_two_torus(chains["Toda"], omega)) for omega in second)
+    assert upper == pytest.approx(lower, rel=SMOOTH_SCAN)
+
+
+def test_alpha_s_torus_is_torn_at_its_resonance(chains):
+    lower, upper = (resonant_coefficient(refined_two_torus(chains["alpha"], omega)) for omega in ("0.390450", "0.390453"))
+    assert lower < 0
+    assert upper > -20 * lower
+
+
 @pytest.mark.parametrize(("pole", "residue"), [(0.3904515, 3e-11), (0.390472, -5e-12)])
 def test_a_pole_with_a_smooth_background_is_found(pole, residue):
     omega = pole + 1e-6 * np.array([-12.0, -7.0, -4.0, -2.0, 1.5, 3.0, 6.0, 11.0])
@@ -86,10 +104,21 @@ def test_a_pole_with_a_smooth_background_is_found(pole, residue):
     assert _residue(omega, coefficients, found) == pytest.approx(residue, rel=FOUR_DIGITS)
 
 
+def test_scans_have_both_sides_of_every_resonance(chains):
+    for name, omega in (("alpha", 0.390451579), ("alpha and beta", 0.390472711), ("Toda", 0.390472732)):
+        sides = [float(second) > omega for second in SCANS[name]]
+        assert 4 <= sum(sides) <= len(sides) - 4
+
+
 def test_excited_groups_are_found():
     """Seed 1 of five bonds: its products at every order."""
     assert excited_groups(Chain(5, alpha=1), (1,), 3) == [(1,), (2,), (3,), (4,)]
     assert excited_groups(Chain(5, beta=1), (1,), 2) == [(1,), (3,), ()]
+
+
+@pytest.mark.parametrize(("N", "seeds"), [(5, (1,)), (6, (2, 3)), (8, (1, 6))])
+def test_groups_of_toda_are_those_of_alpha(N, seeds):
+    assert excited_groups(Chain(N, potential=toda(1)), seeds, 3) == excited_groups(Chain(N, alpha=1), seeds, 3)
 
 
 def test_the_series_of_toda_s_breather_ends_before_it():

@@ -5,6 +5,7 @@ import re
 import pytest
 
 from symfpu import InputError
+from symfpu.notebook import Shown
 from symfpu.plots import usual
 from tests import results
 from tests.elements import read
@@ -29,6 +30,14 @@ def test_signs_of_html_in_an_answer_are_escaped():
 def test_what_has_no_usual_picture_says_so():
     with pytest.raises(InputError, match=r"see symfpu\.plots"):
         usual.picture(3)
+
+
+def test_every_result_that_shows_itself_has_an_entry():
+    def kinds(kind):
+        return {kind}.union(*map(kinds, kind.__subclasses__()))
+
+    for kind in kinds(Shown) - {Shown}:
+        assert any(issubclass(kind, entry.kind) for entry in usual.USUAL), kind
 
 
 def test_borders_are_counted_without_those_that_were_not_found():

@@ -12,12 +12,13 @@ from tests.proofs.certificate_files import reason, sealed
 CASES = {
     "proved": (9, (2, 4), 3, {}),
     "refuted": (6, (2, 3), 2, {"model": "beta"}),
+    "breather": (12, (5,), 4, {}),
     "potential": (6, (2,), 3, {"potential": "toda:1/2"}),
 }
 STILL_TRUE = "potential: another text"  # a name that the checker does not know, with its coefficients
 
 
-@pytest.fixture(scope="module", params=CASES)
+@pytest.fixture(scope="module", params=[pytest.param(name, marks=[pytest.mark.long] * (name == "breather")) for name in CASES])
 def certificate(request):
     *case, law = CASES[request.param]
     return json.loads(json.dumps(prove_propagation(*case, **law).certificate()))

@@ -1,6 +1,8 @@
 """Sweeps: every case a row, whatever becomes of it; gone on with from its file and from no other."""
 
 import json
+import os
+import resource
 import threading
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from fractions import Fraction
@@ -8,9 +10,9 @@ from fractions import Fraction
 import mpmath
 import pytest
 
-from symfpu import Chain, InputError, SweepStopped, excitation_sequence, prove_propagation, read_sweep, sweep
+from symfpu import Chain, FileFull, InputError, SweepStopped, excitation_sequence, prove_propagation, read_sweep, sweep
 from symfpu.files.kept_lines import entry_of, line_of
-from symfpu.sweeps.rows_file import head_of
+from symfpu.sweeps.rows_file import RowsFile, head_of
 from symfpu.sweeps.this_process import ThisProcess
 from tests.sweeps.functions import coupling_of, deadly_square, lists, rows_so_far, slow_square, square, strange
 
@@ -203,11 +205,47 @@ def test_files_that_no_sweep_writes_are_refused(tmp_path, threads, case):
             call(file)
 
 
+def test_a_line_that_was_changed_is_named_and_can_be_removed(tmp_path, threads):
+    file = tmp_path / "rows.jsonl"
+    whole = sweep(square, TEN[:3], executor=threads, file=file)
+    head, first, second, third = file.read_bytes().splitlines(keepends=True)
+    file.write_bytes(head + first + second.replace(b'"square": ', b'"square": 7') + third)
+    for call in (read_sweep, lambda path: sweep(square, TEN[:3], executor=threads, file=path)):
+        with pytest.raises(InputError, match=r"line 3 was changed.* remove this line"):
+            call(file)
+    file.write_bytes(head + first + third)
+    assert sweep(square, TEN[:3], executor=threads, file=file) == whole
+
+
 def test_without_processes_a_row_is_kept_before_the_next_case_begins(tmp_path):
     file = tmp_path / "rows.jsonl"
     swept = sweep(rows_so_far, TEN[:3], executor=ThisProcess(file=str(file)), file=file)
     assert [row.result for row in swept.rows] == [0, 1, 2]
     assert [row.failure.kind for row in sweep(square, [{"n": -1}], executor=ThisProcess()).rows] == ["InputError"]
+
+
+def test_one_process_at_a_time_writes(tmp_path, threads):
+    file = tmp_path / "rows.jsonl"
+    with RowsFile(file, head_of("tests.sweeps.functions.square", {})), pytest.raises(InputError, match="no other run"):
+        sweep(square, TEN, executor=threads, file=file)
+    assert len(sweep(square, TEN, executor=threads, file=file).rows) == 10
+
+
+def test_a_full_disk_costs_no_row_that_is_written(tmp_path, threads):
+    """The limit of the size of a file, which the system tells as it tells a full disk."""
+    file, usual = tmp_path / "rows.jsonl", resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (600, usual[1]))
+    try:
+        with pytest.raises(FileFull, match="make room there") as caught:
+            sweep(square, [{"n": n} for n in range(100)], executor=threads, file=file)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+    kept = read_sweep(file).rows
+    assert len(kept) == caught.value.rows > 2
+    assert file.read_bytes().endswith(b"}\n")
+    whole = sweep(square, [{"n": n} for n in range(100)], executor=threads, file=file)
+    assert {row.case["n"] for row in whole.rows} == set(range(100))
+    assert len(lines_of(file)) == 101
 
 
 class Counting(ThreadPoolExecutor):
@@ -283,3 +321,11 @@ def test_numbers_of_many_digits_are_text(threads):
     swept = sweep(square, [{"n": third}], executor=threads)
     assert mpmath.mpf(swept.rows[0].case["n"]) == pytest.approx(1 / 3)
     assert len(swept.rows[0].case["n"]) > 40
+
+
+def test_what_might_never_end_is_not_read_as_a_sweep(tmp_path, threads):
+    """A pipe that nobody writes: opening it would wait for ever."""
+    os.mkfifo(tmp_path / "pipe")
+    for call in (read_sweep, lambda path: sweep(pow, [{"base": 2, "exp": 3}], executor=threads, file=path)):
+        with pytest.raises(InputError, match="allowed is a regular file"):
+            call(tmp_path / "pipe")
