@@ -39,22 +39,23 @@ from symfpu.tori.amplitudes import amplitude_history as amplitude_history
 from symfpu.tori.amplitudes import solve_amplitudes as solve_amplitudes
 from symfpu.tori.at_energy import torus_at_energy as torus_at_energy
 from symfpu.tori.frequencies import torus_at_amplitudes as torus_at_amplitudes
-from symfpu.tori.quasiperiodic import FourierTorus as FourierTorus
 from symfpu.tori.resummation import PadeSum as PadeSum
-from symfpu.tori.resummation import ResummedTorus as ResummedTorus
+from symfpu.tori.resummation import Resummed as Resummed
 from symfpu.tori.resummation import pade_amplitudes as pade_amplitudes
 from symfpu.tori.resummation import pade_frequencies as pade_frequencies
 from symfpu.tori.resummation import pade_poles as pade_poles
 from symfpu.tori.resummation import resum as resum
-from symfpu.tori.torus import QTorus as QTorus
-from symfpu.tori.torus import RootCertificate as RootCertificate
+from symfpu.tori.from_series import FromSeries as FromSeries
+from symfpu.tori.from_series import RootCertificate as RootCertificate
+from symfpu.tori.torus import Origin as Origin
+from symfpu.tori.torus import Torus as Torus
 from symfpu.tori.unfolding import unfold as unfold
 from symfpu.tori.verdict import Assessment as Assessment
 from symfpu.tori.verdict import assess as assess
 
 # tori by Newton's method
-from symfpu.refinement.digits import PreciseTorus as PreciseTorus
-from symfpu.refinement.refined_torus import RefinedTorus as RefinedTorus
+from symfpu.refinement.digits import IterativeRefinement as IterativeRefinement
+from symfpu.refinement.refined_torus import Newton as Newton
 from symfpu.refinement.tori import refine as refine
 from symfpu.refinement.travelling_breather import travelling_breather as travelling_breather
 
@@ -66,7 +67,7 @@ from symfpu.certified.stay import prove_stay as prove_stay
 
 # breathers
 from symfpu.breathers.at_energy import breather_at_energy as breather_at_energy
-from symfpu.breathers.balance import PeriodicOrbit as PeriodicOrbit
+from symfpu.breathers.balance import HarmonicBalance as HarmonicBalance
 from symfpu.breathers.balance import breather_at_amplitude as breather_at_amplitude
 from symfpu.breathers.balance import periodic_orbit as periodic_orbit
 from symfpu.breathers.precise_orbit import periodic_orbit_digits as periodic_orbit_digits

@@ -18,11 +18,11 @@ from symfpu.algebra.grading import Ints
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers, with_digits
 from symfpu.numbers.public import public
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 
 @public
-def actions(solution: QuasiPeriodic) -> dict[int, Any]:
+def actions(solution: Torus) -> dict[int, Any]:
     """The action of every angle, by seed: I_i = 1/2 sum nu_i (nu.omega) c_q[nu]^2.
 
     solution : any torus or breather, of fixed ends or of a ring; on a ring the coefficients of
@@ -37,7 +37,7 @@ def actions(solution: QuasiPeriodic) -> dict[int, Any]:
     >>> round(actions(breather_at_amplitude(Chain(8, beta=1), 1, "0.4"))[1], 9)
     0.031268297
     """
-    if not isinstance(solution, QuasiPeriodic):
+    if not isinstance(solution, Torus):
         allowed = "a solution: a torus or a breather"
         advice = "pass what solve_amplitudes or refine gave"
         raise InputError("solution", type(solution).__name__, allowed, advice)

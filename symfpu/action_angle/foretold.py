@@ -49,7 +49,7 @@ from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import double, random_seed
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.torus import Torus, require_solution
 
 Floats = NDArray[np.float64]
 REFINED = 1e-8  # residual of a torus, relative, above which it is refused
@@ -76,7 +76,7 @@ class ForetoldIndices(Shown, Gridded):
     ..., on the torus -1, -2, -3, settled from t = ..., by normal modes)
     """
 
-    torus: QuasiPeriodic
+    torus: Torus
     times: Floats
     log10_gali: Floats
     growth: Floats
@@ -215,7 +215,7 @@ def settled_text(time: float, last: float) -> str:
 
 @public
 def foretold_indices(
-    solution: QuasiPeriodic,
+    solution: Torus,
     T: float | ArrayLike,
     *,
     vectors: int | None = None,
@@ -254,7 +254,7 @@ def foretold_indices(
 
 
 def flow_of(
-    torus: QuasiPeriodic, normal: NormalModes | None = None, start: float = 0.0
+    torus: Torus, normal: NormalModes | None = None, start: float = 0.0
 ) -> LinearFlow:
     """The linearised flow about a refined torus from its state at a time on."""
     directions = _at_rest(torus) if normal is None else _given(torus, normal)
@@ -267,7 +267,7 @@ def flow_of(
 
 
 def indices_by(
-    flow: LinearFlow, solution: QuasiPeriodic, times: Floats, vectors: int, seed: int
+    flow: LinearFlow, solution: Torus, times: Floats, vectors: int, seed: int
 ) -> ForetoldIndices:
     """Indices of one frame; all frames of a torus need one flow."""
     s = len(solution.seeds)
@@ -319,7 +319,7 @@ def _volumes_at(flow: LinearFlow, start: Floats, times: Floats) -> tuple[Floats,
     return np.cumsum(np.log10(heights), axis=1)[:, 1:], np.log(lengths[:, 0])
 
 
-def _checked(solution: object) -> QuasiPeriodic:
+def _checked(solution: object) -> Torus:
     """The solution in doubles; InputError for what is no refined torus."""
     torus = require_solution(solution, "solution")
     require_refined(torus, REFINED)
@@ -343,7 +343,7 @@ def _times(T: object, samples: int) -> Floats:
     return times
 
 
-def _at_rest(torus: QuasiPeriodic) -> list[NormalDirection]:
+def _at_rest(torus: Torus) -> list[NormalDirection]:
     if torus.stands:
         allowed = "normal modes, of standing waves of a ring"
         raise InputError("normal", None, allowed, "pass normal_modes(solution)")
@@ -356,7 +356,7 @@ def _at_rest(torus: QuasiPeriodic) -> list[NormalDirection]:
     ]
 
 
-def _given(torus: QuasiPeriodic, normal: object) -> list[NormalDirection]:
+def _given(torus: Torus, normal: object) -> list[NormalDirection]:
     """The directions of normal modes that are those of this torus; InputError for others."""
     if not isinstance(normal, NormalModes):
         advice = "pass normal_modes(solution)"

@@ -22,7 +22,7 @@ from symfpu.action_angle.newton_twist import ActionChanges
 from symfpu.action_angle.shapes import Values, by_mode, mode_shapes
 from symfpu.normal.modes import NormalMode
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Complex = NDArray[np.complex128]
 Sum = tuple[Complex, Values]  # weights of harmonics (T, H) and their coefficients (H, n)
@@ -68,7 +68,7 @@ class LinearFlow:
 
     def __init__(
         self,
-        torus: QuasiPeriodic,
+        torus: Torus,
         changes: ActionChanges,
         phases: Floats,
         normal: Sequence[NormalDirection],

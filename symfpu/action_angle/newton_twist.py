@@ -23,7 +23,7 @@ from symfpu.refinement.harmonics import unit_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.newton import responses
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 from symfpu.tori.unfolding import folded
 
 
@@ -42,7 +42,7 @@ class NoTwist(SymfpuError):
         super().__init__(f"no twist: {reason}")
 
 
-def changes_by_newton(torus: QuasiPeriodic) -> tuple[Floats, Floats]:
+def changes_by_newton(torus: Torus) -> tuple[Floats, Floats]:
     """Derivatives of the frequencies and of the actions by ln A_j, (s, s), j last.
 
     torus : that solves the equations of motion, in doubles; of a ring, travelling waves or what
@@ -52,7 +52,7 @@ def changes_by_newton(torus: QuasiPeriodic) -> tuple[Floats, Floats]:
     return found.by_shift.T, found.by_action.T
 
 
-def action_turn(torus: QuasiPeriodic) -> float:
+def action_turn(torus: Torus) -> float:
     """det of d ln I_i / d ln A_j: it passes zero where the actions turn on a family; NoTwist."""
     by_action = _changes(torus).by_action
     by_logarithm = by_action / np.array(list(actions(torus).values()))
@@ -74,7 +74,7 @@ class ActionChanges:
     twist: Floats
 
 
-def changes_by_action(torus: QuasiPeriodic) -> ActionChanges:
+def changes_by_action(torus: Torus) -> ActionChanges:
     """The same by the actions, with what the coefficients do. Raises NoTwist."""
     found = _changes(torus)
     try:
@@ -99,7 +99,7 @@ class _Changes(NamedTuple):
     by_action: Floats
 
 
-def _changes(torus: QuasiPeriodic) -> _Changes:
+def _changes(torus: Torus) -> _Changes:
     if torus.stands:
         half = _changes(folded(torus))
         return half._replace(by_action=2 * half.by_action)
@@ -125,7 +125,7 @@ def _changes(torus: QuasiPeriodic) -> _Changes:
     return _Changes(equation, known, by_cosine, by_shift, np.array(by_action))
 
 
-def equation_of(torus: QuasiPeriodic) -> tuple[InvarianceEquation, Numbers]:
+def equation_of(torus: Torus) -> tuple[InvarianceEquation, Numbers]:
     """The equation on the harmonics of a torus, the seeds' own among them, and its cosines.
 
     Cosines (H, C) as the torus has them, 0 where the symmetry forbids one.

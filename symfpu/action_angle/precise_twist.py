@@ -17,12 +17,7 @@ from symfpu.action_angle.actions import half_weighted
 from symfpu.action_angle.newton_twist import NoTwist, equation_of
 from symfpu.files.progress import unheard
 from symfpu.normal.kronecker import KroneckerFlow
-from symfpu.numbers.arithmetic import (
-    MULTIPRECISION,
-    Numbers,
-    from_integers,
-    mpf,
-)
+from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, from_integers, mpf
 from symfpu.refinement.conditions import Amplitude, seed_amplitudes
 from symfpu.refinement.digits import ACCURACY, CARRIED_DIGITS
 from symfpu.refinement.guesses import shifts_of
@@ -30,10 +25,10 @@ from symfpu.refinement.iterative_refinement import Failure, Problem, converge
 from symfpu.refinement.kronecker import Integers
 from symfpu.refinement.lattice import Floats
 from symfpu.refinement.newton import Correction
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 
-def changes_in_digits(torus: QuasiPeriodic) -> tuple[Numbers, Numbers]:
+def changes_in_digits(torus: Torus) -> tuple[Numbers, Numbers]:
     """Derivatives of the frequencies and of the actions by ln A_j, (s, s), j last, as mpf.
 
     torus : that solves the equations of motion to its digits. Raises NoTwist.
@@ -51,7 +46,7 @@ def changes_in_digits(torus: QuasiPeriodic) -> tuple[Numbers, Numbers]:
 class Tangents:
     """J at a torus with many digits, exact and in doubles; at the working precision of mpmath."""
 
-    def __init__(self, torus: QuasiPeriodic) -> None:
+    def __init__(self, torus: Torus) -> None:
         self.torus = torus
         self.equation, self.known = equation_of(torus)
         self.harmonics, self.mask = self.equation.harmonics, self.equation.mask

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from symfpu.chain.chain import Chain
 from symfpu.chain.projections.standing import is_sine
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Values = NDArray[Any]  # doubles or complex doubles
 
 
-def mode_shapes(torus: QuasiPeriodic) -> Values:
+def mode_shapes(torus: Torus) -> Values:
     """What each mode displaces, in the order of chain.mode_numbers; (N-1, coordinates)."""
     if not torus.chain.periodic:
         return np.eye(torus.chain.N - 1)
@@ -45,7 +45,7 @@ def _standing(ring: Chain) -> Floats:
     return np.array(rows)
 
 
-def by_mode(torus: QuasiPeriodic, harmonics: Ints, coefficients: Floats) -> Values:
+def by_mode(torus: Torus, harmonics: Ints, coefficients: Floats) -> Values:
     """Coefficients (..., H, C) of a torus, or of its changes, by all modes; (..., H, N-1).
 
     harmonics : (H, s). C as in `ActionChanges`: complex of travelling waves, whose

@@ -27,7 +27,7 @@ from symfpu.frames.tabled import Gridded
 from symfpu.normal.torus import in_digits
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text, with_digits
 from symfpu.numbers.public import public
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 SOLVED = 1e-8  # relative residual above which a torus is not refined
 SHOWN_DIGITS = 10
@@ -163,11 +163,11 @@ def _rounding(digits: int | None) -> float:
 
 
 @public
-def twist(solution: QuasiPeriodic) -> Twist:
+def twist(solution: Torus) -> Twist:
     """Lambda = d omega / d I of a torus or breather, its signature and determinants.
 
     solution : a refined torus (`refine`) or a breather, by Newton's matrix: in doubles, of one
-        that was refined to many digits (PreciseTorus) with as many; of a ring,
+        that was refined to many digits (`refine` with digits) with as many; of a ring,
         refined: travelling waves, or what `unfold` gave. Dimensionless.
 
     Nothing is a difference of two tori. Lambda of an exact torus is symmetric. A truncated series
@@ -204,7 +204,7 @@ def _rounded(values: list[Any], digits: int | None) -> Numbers:
         return with_digits(np.array(numbers, dtype=object), digits)
 
 
-def _lambda(solution: QuasiPeriodic) -> Numbers:
+def _lambda(solution: Torus) -> Numbers:
     """d omega / d I, of what both change by with the amplitudes."""
     frequencies, by_amplitude = _by_newton(solution)
     precise = in_digits(solution)
@@ -227,19 +227,19 @@ def _solved(matrix: Numbers, right: Numbers) -> Numbers:
     return np.asarray(np.array(inverse.tolist(), dtype=object) @ right)
 
 
-def _by_newton(solution: QuasiPeriodic) -> tuple[Numbers, Numbers]:
+def _by_newton(solution: Torus) -> tuple[Numbers, Numbers]:
     """In digits where the solution has those of the equations, in doubles else."""
     if in_digits(solution):
         return changes_in_digits(solution)
     return changes_by_newton(solution.in_doubles())
 
 
-def is_refined(solution: QuasiPeriodic) -> bool:
+def is_refined(solution: Torus) -> bool:
     """Whether Newton's matrix at the solution is that of a torus."""
     return bool(solution.residual() <= SOLVED)
 
 
-def _require_refined(solution: QuasiPeriodic) -> None:
+def _require_refined(solution: Torus) -> None:
     """InputError for what is not refined."""
     if not is_refined(solution):
         kind, residual = type(solution).__name__, float(solution.residual())

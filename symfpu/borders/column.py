@@ -6,27 +6,15 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from symfpu.borders.chaos import (
-    CHAOS,
-    DRAWS,
-    IN_PHASE,
-    TIME,
-    ChaosRay,
-    chaos_borders,
-)
-from symfpu.borders.newton_end import (
-    FOLD,
-    MOST_HARMONICS,
-    NEWTON,
-    STABILITY,
-    newton_end,
-)
+from symfpu.borders.chaos import CHAOS, DRAWS, IN_PHASE, TIME, ChaosRay, chaos_borders
+from symfpu.borders.newton_end import FOLD, MOST_HARMONICS, NEWTON, STABILITY, newton_end
 from symfpu.borders.packets import packet_modes
 from symfpu.borders.point import ENERGY, ESTIMATES, POLES, Ray
 from symfpu.borders.search import NoBorder, Points, series_border
 from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError, SymfpuError
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Json = dict[str, Any]
 
@@ -113,7 +101,7 @@ def _newton_borders(
     return borders, [point.record() for point in end.points]
 
 
-def _beginning(points: Points) -> tuple[QTorus, float]:
+def _beginning(points: Points) -> tuple[Torus[FromSeries], float]:
     """The torus from which Newton's method begins: the lowest whose series is good enough.
 
     And its place. Where no point was asked for, those on the way to the nearest pole are looked

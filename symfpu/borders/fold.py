@@ -16,7 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.tori import RefinedTorus, shifts_of
+from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.tori import shifts_of
+from symfpu.tori.torus import Torus
 
 MOST_UNKNOWNS = 4000  # of a dense matrix
 INVERSE_STEPS = 100  # from a random vector to the null vector, at most
@@ -44,7 +46,7 @@ class Sheet:
     harmonic: tuple[int, ...]
 
 
-def sheet_of(torus: RefinedTorus) -> Sheet | None:
+def sheet_of(torus: Torus[Newton]) -> Sheet | None:
     """The sheet on which a torus lies; None if it has too many coefficients for a dense matrix."""
     equation = InvarianceEquation(torus.chain, torus.seeds, torus.harmonics)
     unknown = equation.mask.copy()

@@ -6,15 +6,17 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.resonances import NearResonance
-from symfpu.refinement.tori import NoTorus, RefinedTorus
+from symfpu.refinement.tori import NoTorus
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import short
 
 SHARPER = 1e-2  # of the tolerance to which a torus was found, to confirm it
 Json = dict[str, Any]
 
 
-def confirmation(torus: RefinedTorus, refined: Callable[[float], RefinedTorus]) -> Json:
+def confirmation(torus: Torus[Newton], refined: Callable[[float], Torus[Newton]]) -> Json:
     """The same torus with more harmonics, to a hundredth of the residual, as JSON holds it.
 
     refined : the torus to SHARPER of the tolerance it was found with, given that factor.
@@ -38,7 +40,7 @@ def confirmation(torus: RefinedTorus, refined: Callable[[float], RefinedTorus]) 
 
 
 def vanishing_divisor(
-    before: tuple[float, RefinedTorus], last: tuple[float, RefinedTorus], above: float
+    before: tuple[float, Torus[Newton]], last: tuple[float, Torus[Newton]], above: float
 ) -> NearResonance | None:
     """The divisor that is zero before the place `above` if it goes on as between two tori.
 
@@ -58,5 +60,5 @@ def vanishing_divisor(
     return max(found, key=lambda resonance: abs(resonance.coefficient), default=None)
 
 
-def _by_name(torus: RefinedTorus) -> Mapping[tuple[Any, ...], NearResonance]:
-    return {(near.mode, near.harmonic): near for near in torus.near_resonances}
+def _by_name(torus: Torus[Newton]) -> Mapping[tuple[Any, ...], NearResonance]:
+    return {(near.mode, near.harmonic): near for near in torus.origin.near_resonances}

@@ -12,23 +12,19 @@ import numpy as np
 from symfpu.borders.fold import MOST_UNKNOWNS, sheet_of
 from symfpu.borders.last_torus import confirmation, vanishing_divisor
 from symfpu.borders.point import ENERGY, Ray
-from symfpu.breathers.balance import PeriodicOrbit, orbit_at
+from symfpu.breathers.balance import HarmonicBalance, orbit_at
 from symfpu.breathers.equations import NoPeriodicOrbit
 from symfpu.breathers.floquet import floquet
 from symfpu.breathers.from_rest import FromRest
 from symfpu.breathers.passage import AmplitudeGoal, EnergyGoal, first_passage
 from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.resonances import NearResonance
 from symfpu.refinement.search import ALL_THAT_FIT
-from symfpu.refinement.tori import (
-    NoTorus,
-    RefinedTorus,
-    ended_early,
-    refine,
-)
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.torus import QTorus
+from symfpu.refinement.tori import NoTorus, ended_early, refine
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import short
 
 FACTOR = 1.25  # of the place, at most, from one torus to the next, if a loss is looked for
@@ -39,7 +35,7 @@ TOLERANCE = 1e-9  # of the residual, as of what `normal_modes` takes
 SAME_ORBIT = 1e-5  # of the size: what such a residual leaves open of an orbit
 CONFIRMING = 3  # times as many harmonics for the last torus as for those on the way
 Json = dict[str, Any]
-Test = Callable[[RefinedTorus], Json | None]
+Test = Callable[[Torus[Newton]], Json | None]
 
 MOST_HARMONICS = 400
 NEWTON, FOLD, STABILITY = "newton", "fold", "stability"
@@ -54,7 +50,7 @@ class RefinedPoint:
     """A torus of Newton's method on a ray."""
 
     place: float
-    torus: RefinedTorus
+    torus: Torus[Newton]
 
     def record(self) -> dict[str, Any]:
         """As JSON holds it."""
@@ -134,7 +130,7 @@ class NewtonEnd:
 
     def _newton(self) -> Json:
         vanishing = self._vanishing()
-        near = [vanishing] if vanishing else self.last.torus.near_resonances[:1]
+        near = [vanishing] if vanishing else self.last.torus.origin.near_resonances[:1]
         return {
             "place": short(self.last.place),
             "energy": short(float(self.last.torus.energy())),
@@ -151,7 +147,7 @@ class NewtonEnd:
 
 def newton_end(
     ray: Ray,
-    guess: QTorus,
+    guess: Torus[FromSeries],
     begin: float,
     end: float,
     *,
@@ -185,7 +181,7 @@ def newton_end(
 
 
 def _confirmed(tori: _Tori, last: RefinedPoint, most: int) -> Json:
-    def refined(sharper: float) -> RefinedTorus:
+    def refined(sharper: float) -> Torus[Newton]:
         tolerance = sharper * TOLERANCE
         return tori.refined(last.torus, last.place, CONFIRMING * most, tolerance)
 
@@ -229,7 +225,7 @@ def _located(tori: _Tori, test: Test, loss: Loss, most: int) -> Loss:
     return Loss(below, above, found)
 
 
-def _growth(torus: RefinedTorus) -> Json | None:
+def _growth(torus: Torus[Newton]) -> Json | None:
     """The rate of the fastest normal mode; None where none is unstable beyond doubt."""
     if len(torus.seeds) == 1:
         found = floquet(torus)
@@ -245,7 +241,7 @@ def _growth(torus: RefinedTorus) -> Json | None:
     return {"growth": short(float(modes.growth))} if modes.stable is False else None
 
 
-def _other_sheet(torus: RefinedTorus) -> Json | None:
+def _other_sheet(torus: Torus[Newton]) -> Json | None:
     """Nothing to say where the torus is not on the sheet of its series; None where it is."""
     sheet = sheet_of(torus)
     return None if sheet is None or sheet.sign > 0 else {}
@@ -276,7 +272,7 @@ class _Stop:
 
 def _followed(
     tori: _Tori,
-    guess: QuasiPeriodic,
+    guess: Torus,
     place: float,
     end: float,
     most: int,
@@ -318,8 +314,8 @@ class _Tori:
         self._walk = FromRest(ray.chain, *ray.seeds) if one_family else None
 
     def refined(
-        self, guess: QuasiPeriodic, place: float, most: int, tolerance: float = TOLERANCE
-    ) -> RefinedTorus:
+        self, guess: Torus, place: float, most: int, tolerance: float = TOLERANCE
+    ) -> Torus[Newton]:
         """The torus of a place; NoTorus also where Newton's method ended early."""
         orbit = None if self._walk is None else self._on_family(self._walk, guess, place)
         found = self._at(orbit or guess, place, most, tolerance)
@@ -330,8 +326,8 @@ class _Tori:
         return found
 
     def _on_family(
-        self, walk: FromRest, guess: QuasiPeriodic, place: float
-    ) -> PeriodicOrbit:
+        self, walk: FromRest, guess: Torus, place: float
+    ) -> Torus[HarmonicBalance]:
         value = float(f"{place:.8g}")
         energy = EnergyGoal(self.ray.chain, value)
         goal = energy if self.ray.by == ENERGY else AmplitudeGoal(value)
@@ -340,9 +336,7 @@ class _Tori:
         except NoPeriodicOrbit as failure:
             raise NoTorus(failure.reason, guess, guess.residual()) from failure
 
-    def _at(
-        self, guess: QuasiPeriodic, place: float, most: int, tolerance: float
-    ) -> RefinedTorus:
+    def _at(self, guess: Torus, place: float, most: int, tolerance: float) -> Torus[Newton]:
         name, seeds = f"{place:.8g}", self.ray.seeds
         if self.ray.by == ENERGY:
             return refine(
@@ -358,7 +352,7 @@ class _Tori:
         )
 
 
-def _require_same(orbit: PeriodicOrbit, found: RefinedTorus) -> None:
+def _require_same(orbit: Torus[HarmonicBalance], found: Torus[Newton]) -> None:
     """NoTorus where Newton's method on tori leads from an orbit to another one."""
     other = found.by_harmonic().astype(float)
     length = min(len(other), len(orbit.cosines))

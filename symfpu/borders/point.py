@@ -14,7 +14,8 @@ from symfpu.errors import SymfpuError
 from symfpu.tori.amplitudes import steps_of_frequencies
 from symfpu.tori.at_energy import torus_at_energy
 from symfpu.tori.frequencies import torus_at_amplitudes
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import RATIO_ORDERS, Assessment, assess, short
 
 DIGITS = 8  # of the places at which tori are looked for
@@ -42,7 +43,7 @@ class Ray:
         """Energies go as place^degree while they are small."""
         return 1 if self.by == ENERGY else 2
 
-    def torus(self, place: float, near: QTorus | None) -> QTorus:
+    def torus(self, place: float, near: Torus[FromSeries] | None) -> Torus[FromSeries]:
         """The torus of the series at a place; raises what `torus_at_energy` raises."""
         name = f"{place:.{DIGITS}g}"
         if self.by == ENERGY:
@@ -62,7 +63,7 @@ class Point:
     """
 
     place: float
-    torus: QTorus | None
+    torus: Torus[FromSeries] | None
     assessment: Assessment | None
     exponent: float = 1.0
     failure: str = ""
@@ -94,14 +95,14 @@ class Point:
         }
 
 
-def point_at(ray: Ray, place: float, near: QTorus | None) -> Point:
+def point_at(ray: Ray, place: float, near: Torus[FromSeries] | None) -> Point:
     """The point at a place, from a torus near it or from rest; a failure is a point, too."""
     try:
         torus = ray.torus(place, near)
-        found = assess(torus.series, torus)
+        found = assess(torus.origin.series, torus)
     except SymfpuError as error:
         return Point(place, None, None, failure=f"{type(error).__name__}: {error}")
-    step = steps_of_frequencies(torus.series)
+    step = steps_of_frequencies(torus.origin.series)
     exponent = step / ray.degree
     return Point(place, torus, found, exponent, radii=_radii(found, step))
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from symfpu.borders.point import Point, Ray, point_at, singularity
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import short
 
 FIRST_PLACE, LOWERING, LOWERINGS = 1e-6, 1e-2, 6  # energies at which a ray is begun
@@ -38,7 +39,7 @@ class Points:
             self.by_place[place] = point_at(self.ray, place, self.near(place))
         return self.by_place[place]
 
-    def near(self, place: float) -> QTorus | None:
+    def near(self, place: float) -> Torus[FromSeries] | None:
         """The torus of the nearest place below; None if there is none."""
         known = [p for p in self.by_place.values() if p.torus and p.place <= place]
         return max(known, key=lambda point: point.place).torus if known else None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from symfpu.breathers.balance import (
     ONE_SEED,
-    PeriodicOrbit,
+    HarmonicBalance,
     as_periodic_orbit,
     orbit_at,
     orbit_near,
@@ -23,7 +23,7 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, energy_of, seed_modes
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ class NoBreatherAtEnergy(SymfpuError):
         seed: int,
         energy: float,
         harmonic: bool,
-        member: PeriodicOrbit | None,
+        member: Torus[HarmonicBalance] | None,
         failure: NoPeriodicOrbit,
     ) -> None:
         self.seed, self.energy, self.harmonic, self.reason = (
@@ -111,8 +111,8 @@ def breather_at_energy(
     energy: Number,
     *,
     harmonic: bool = False,
-    guess: QuasiPeriodic | None = None,
-) -> PeriodicOrbit:
+    guess: Torus | None = None,
+) -> Torus[HarmonicBalance]:
     """The q-breather of a seed mode with the given energy; frequency and amplitude are found.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
@@ -143,7 +143,7 @@ def breather_at_energy(
     if guess is not None:
         member = _member(guess, chain, seed)
         level = Level(chain, goal, harmonic)
-        return orbit_near(chain, seed, member.cosines, member.sigma, level, REACH)
+        return orbit_near(chain, seed, member.cosines, member.origin.sigma, level, REACH)
     aim, walk = EnergyGoal(chain, goal, harmonic), None
     try:
         walk = FromRest(chain, seed)
@@ -174,13 +174,13 @@ def _passed_again(walk: FromRest, aim: EnergyGoal) -> float | None:
     return None
 
 
-def _highest(walk: FromRest, aim: EnergyGoal) -> PeriodicOrbit:
+def _highest(walk: FromRest, aim: EnergyGoal) -> Torus[HarmonicBalance]:
     """The orbit of a walk with the largest energy."""
     highest = max(walk.points, key=lambda point: aim.value(point.balance, point.z))
     return orbit_at(highest, walk.iterations)
 
 
-def _member(guess: object, chain: Chain, seed: int) -> PeriodicOrbit:
+def _member(guess: object, chain: Chain, seed: int) -> Torus[HarmonicBalance]:
     """A guess as a periodic orbit of this seed and chain; raises InputError for any other."""
     member = as_periodic_orbit(guess, "guess", ONE_SEED)
     if (member.chain, member.seed) != (chain, seed):
@@ -190,6 +190,6 @@ def _member(guess: object, chain: Chain, seed: int) -> PeriodicOrbit:
     return member
 
 
-def _energy(member: PeriodicOrbit, harmonic: bool) -> float:
+def _energy(member: Torus[HarmonicBalance], harmonic: bool) -> float:
     """H, or the harmonic energy sum E_q, at t = 0."""
     return float(member.harmonic_energies().sum() if harmonic else member.energy())

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from typing import ClassVar
 
 import mpmath
 import numpy as np
@@ -32,10 +33,9 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
 from symfpu.numbers.arithmetic import DOUBLES
-from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
-from symfpu.numbers.typed import Number, decimal, double, exact, seed_modes
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, require_fixed_solution
+from symfpu.numbers.typed import Number, double, exact, seed_modes
+from symfpu.tori.torus import Origin, Torus, comes_from, require_fixed_solution
 
 Floats = NDArray[np.float64]
 ONE_ANGLE = "a solution of one angle"
@@ -43,37 +43,24 @@ ONE_SEED = "take a solution of one seed, or None"
 LARGEST_FREQUENCY = 10**6
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class PeriodicOrbit(FourierTorus):
-    """The periodic orbit Q_q(t) = sum_n c[n, q-1] cos(n omega t) of a chain; dimensionless.
+@dataclass(frozen=True, eq=False, repr=False)
+class HarmonicBalance(Origin):
+    """Where a breather comes from: harmonic balance in doubles, Eq. qser with s = 1.
 
-    A solution of one angle. Made by `periodic_orbit`, `breather_at_amplitude` and
-    `breather_at_energy`: Eq. qser with s = 1, exact where the paper cuts it (section 6.4).
+    Exact where the paper cuts it (section 6.4). Its torus has the harmonics 0 .. H.
 
-    chain, seeds : the model and its one seed. frequencies : omega, exact, shape (1,).
-    harmonics : 0 .. H, shape (H+1, 1). cosines : c in doubles, shape (H+1, N-1), harmonic 0 first.
-    phases : 0 of the seed, radians. digits : None, of doubles. travels : False. warnings : reasons
-        to doubt it.
-    iterations : Newton steps on the way. sigma : omega^2 - Omega_seed^2.
+    iterations : Newton steps on the way. sigma : omega^2 - Omega_seed^2, dimensionless.
 
     >>> from symfpu import periodic_orbit
     >>> periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905")
-    PeriodicOrbit(N=8, alpha=0.3, seed 1, omega=0.3905, A=0.4051586230417, H=0.012798422083,
-    13 harmonics, residual ...)
+    Torus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4051586230417, H=0.012798422083...,
+    14 harmonics, residual ...)
     """
+
+    name: ClassVar[str] = "breather"
 
     iterations: int
     sigma: float
-
-    def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        which = (
-            f"seed {self.seed}, omega={decimal(self.frequency)}, A={self.amplitude:.13g}"
-        )
-        quality = (
-            f"{counted(len(self.cosines) - 1, 'harmonic')}, residual {self.residual():.2g}"
-        )
-        return f"PeriodicOrbit({chain}, {which}, H={self.energy():.11g}, {quality})"
 
 
 def orbit_of(
@@ -84,28 +71,22 @@ def orbit_of(
     *,
     iterations: int,
     sigma: float,
-) -> PeriodicOrbit:
+) -> Torus[HarmonicBalance]:
     """The orbit with these coefficients, harmonic 0 first, shape (H+1, N-1)."""
     harmonics = np.arange(len(cosines))[:, None]
     phases = {seed: 0.0}
-    return PeriodicOrbit(
-        chain,
-        (seed,),
-        (omega,),
-        harmonics,
-        cosines,
-        phases,
-        iterations=iterations,
-        sigma=sigma,
-    )
+    origin = HarmonicBalance(iterations, sigma)
+    return Torus(chain, (seed,), (omega,), harmonics, cosines, phases, origin=origin)
 
 
-def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicOrbit:
+def as_periodic_orbit(
+    solution: object, argument: str, advice: str
+) -> Torus[HarmonicBalance]:
     """A solution of one angle as a periodic orbit in doubles, at rest at t = 0.
 
     Raises InputError for any other. advice : what to do with a torus of more angles.
     """
-    if not isinstance(solution, QuasiPeriodic):
+    if not isinstance(solution, Torus):
         advice = "take one from periodic_orbit, breather_at_amplitude or refine"
         raise InputError(argument, type(solution).__name__, ONE_ANGLE, advice)
     require_fixed_solution(solution, argument)
@@ -113,7 +94,7 @@ def as_periodic_orbit(solution: object, argument: str, advice: str) -> PeriodicO
         raise InputError(
             argument, f"a torus of {len(solution.seeds)} angles", ONE_ANGLE, advice
         )
-    if isinstance(solution, PeriodicOrbit) and not solution.phases[solution.seed]:
+    if comes_from(solution, HarmonicBalance) and not solution.phases[solution.seed]:
         return solution
     chain, seed, omega = solution.chain, solution.seed, solution.frequency
     _, sigma = detuning(chain, seed, omega)
@@ -126,8 +107,8 @@ def periodic_orbit(
     chain: Chain,
     seed: int,
     frequency: Number,
-    guess: ArrayLike | QuasiPeriodic | None = None,
-) -> PeriodicOrbit:
+    guess: ArrayLike | Torus | None = None,
+) -> Torus[HarmonicBalance]:
     """The q-breather of a seed mode with the given frequency.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
@@ -196,8 +177,8 @@ def breather_at_amplitude(
     chain: Chain,
     seed: int,
     amplitude: Number,
-    guess: ArrayLike | QuasiPeriodic | None = None,
-) -> PeriodicOrbit:
+    guess: ArrayLike | Torus | None = None,
+) -> Torus[HarmonicBalance]:
     """The q-breather of a seed mode with the given amplitude; its frequency is found.
 
     chain, seed : the model and the mode; all quantities are dimensionless.
@@ -231,8 +212,8 @@ def breather_at_amplitude(
     return orbit_near(chain, seed, cosines, sigma, held_amplitude)
 
 
-def _cosines(chain: Chain, seed: int, guess: ArrayLike | QuasiPeriodic) -> Floats:
-    if isinstance(guess, QuasiPeriodic):
+def _cosines(chain: Chain, seed: int, guess: ArrayLike | Torus) -> Floats:
+    if isinstance(guess, Torus):
         guess = as_periodic_orbit(guess, "guess", ONE_SEED).cosines
     shape = f"(H+1, {chain.N - 1})"
     try:
@@ -261,7 +242,7 @@ def orbit_near(
     sigma: float,
     given: Callable[[Balance], int | Condition],
     reach: float = GROWTH,
-) -> PeriodicOrbit:
+) -> Torus[HarmonicBalance]:
     """The orbit near cosines and sigma, with as many harmonics as it needs.
 
     No coefficient is changed by more than reach.
@@ -305,13 +286,13 @@ def orbit_near(
     )
 
 
-def _on_the_family(chain: Chain, seed: int, goal: Goal) -> PeriodicOrbit:
+def _on_the_family(chain: Chain, seed: int, goal: Goal) -> Torus[HarmonicBalance]:
     """The first orbit of the family from rest that has what is asked for."""
     walk = FromRest(chain, seed)
     return orbit_at(first_passage(walk, goal), walk.iterations)
 
 
-def orbit_at(point: Point, iterations: int) -> PeriodicOrbit:
+def orbit_at(point: Point, iterations: int) -> Torus[HarmonicBalance]:
     """A point of a curve as an orbit, with the corrections on the way to it."""
     balance, cosines = point.balance, point.cosines
     last = int(np.flatnonzero(relative_heights(cosines) > TAIL / 100)[-1])
@@ -321,7 +302,7 @@ def orbit_at(point: Point, iterations: int) -> PeriodicOrbit:
     return orbit_of(balance.chain, balance.seed, omega, kept, iterations=total, sigma=sigma)
 
 
-def half_a_period_later(orbit: PeriodicOrbit) -> PeriodicOrbit:
+def half_a_period_later(orbit: Torus[HarmonicBalance]) -> Torus[HarmonicBalance]:
     """The same orbit from its other rest: A has the other sign."""
     signs = np.where(np.arange(len(orbit.cosines)) % 2, -1.0, 1.0)
     return replace(orbit, cosines=signs[:, None] * orbit.cosines)

@@ -28,7 +28,7 @@ from symfpu.frames.tabled import Gridded
 from symfpu.notebook import Shown
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import decimal
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 MORE_ANGLES = (
@@ -74,7 +74,7 @@ class Floquet(Shown, Gridded):
     2     2  on the circle
     """
 
-    orbit: QuasiPeriodic
+    orbit: Torus
     pairs: NDArray[np.complex128] = field(repr=False)
     kinds: tuple[str, ...]
     kappa: NDArray[np.complex128] = field(repr=False)
@@ -150,7 +150,7 @@ class Floquet(Shown, Gridded):
         )
 
 
-def monodromy(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floats:
+def monodromy(orbit: Torus, *, scheme: str = "kahan_li8") -> Floats:
     """Tangent map over one period in mode coordinates and momenta, from a state at rest.
 
     scheme : of the integrator, on T + V. Returns shape (2(N-1), 2(N-1)). Raises InputError.
@@ -161,7 +161,7 @@ def monodromy(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floats:
 
 
 @public
-def floquet(orbit: QuasiPeriodic, *, scheme: str = "kahan_li8") -> Floquet:
+def floquet(orbit: Torus, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
     orbit : a solution of one angle, from `periodic_orbit`, `refine` or others, on a ring from

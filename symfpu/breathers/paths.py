@@ -16,11 +16,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import ONE_ANGLE, PeriodicOrbit, as_periodic_orbit
+from symfpu.breathers.balance import ONE_ANGLE, HarmonicBalance, as_periodic_orbit
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.tangent import real_waves
 from symfpu.errors import InputError
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.torus import Torus, require_solution
 
 Floats = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ def path_of(solution: object, argument: str, advice: str) -> PeriodicPath:
     return _of_waves(orbit.in_doubles())
 
 
-def _of_cosines(orbit: PeriodicOrbit) -> PeriodicPath:
+def _of_cosines(orbit: Torus[HarmonicBalance]) -> PeriodicPath:
     chain, omega = orbit.chain, float(orbit.frequency)
     coefficients = chain.stretches(orbit.cosines)
     rates = np.arange(len(coefficients)) * omega
@@ -69,7 +69,7 @@ def _of_cosines(orbit: PeriodicOrbit) -> PeriodicPath:
     return PeriodicPath(chain, omega, stretches, len(coefficients), force, None)
 
 
-def _of_waves(torus: QuasiPeriodic) -> PeriodicPath:
+def _of_waves(torus: Torus) -> PeriodicPath:
     chain, (q,) = torus.chain, torus.seeds
     wave = replace(torus.in_doubles(), phases={q: 0.0})
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from symfpu.breathers.balance import (
-    PeriodicOrbit,
+    HarmonicBalance,
     as_periodic_orbit,
     breather_at_amplitude,
     periodic_orbit,
@@ -26,14 +26,14 @@ from symfpu.numbers.arithmetic import GUARD_DIGITS
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.digits import (
-    PreciseTorus,
+    IterativeRefinement,
     guess_of,
     require_digits,
     torus_to_digits,
 )
 from symfpu.refinement.iterative_refinement import Failure
 from symfpu.refinement.prescribed import Amplitudes, Frequencies, Prescribed
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus, comes_from
 
 MORE_ANGLES = "for tori of more angles call refine(torus, digits=...)"
 CARRIED_DIGITS = GUARD_DIGITS // 2  # of coefficients, beyond those asked for
@@ -43,17 +43,17 @@ FLAT = 1e-7
 
 @public
 def periodic_orbit_digits(
-    orbit: QuasiPeriodic,
+    orbit: Torus,
     digits: int,
     *,
     frequency: Number | None = None,
     amplitude: Number | None = None,
     file: Path | str | None = None,
     progress: Progress | None = None,
-) -> PreciseTorus:
+) -> Torus[IterativeRefinement]:
     """The periodic orbit near `orbit` with so many digits, of the largest coefficient.
 
-    orbit : a solution of one angle to start from, in doubles or a PreciseTorus of fewer digits; its
+    orbit : a solution of one angle to start from, in doubles or refined to fewer digits; its
         phase (radians) is kept. Dimensionless; the potential a polynomial, or not even and made of
         exponentials and powers with rational numbers.
     digits : 1 .. 1000.
@@ -80,7 +80,7 @@ def periodic_orbit_digits(
         both = (frequency, amplitude)
         raise InputError("frequency, amplitude", both, "one of them", "leave the other out")
     path = None if file is None else checkpoint_path(file)
-    start = orbit if isinstance(orbit, PreciseTorus) else near
+    start = orbit if comes_from(orbit, IterativeRefinement) else near
     if amplitude is not None:
         start = near = breather_at_amplitude(near.chain, near.seed, amplitude, near.cosines)
     elif frequency is not None:
@@ -92,13 +92,13 @@ def periodic_orbit_digits(
         torus = torus_to_digits(guess, wanted, path, progress or unheard)
     except Failure as failure:
         balance = Balance(near.chain, near.seed, len(near.cosines) - 1)
-        z = balance.vector(near.cosines, near.sigma)
+        z = balance.vector(near.cosines, near.origin.sigma)
         advice = NEARER if amplitude is not None else _advice(balance, z)
         raise NoPeriodicOrbit(balance, str(failure), z, advice) from None
     return replace(torus, digits=digits)
 
 
-def _prescribed(near: PeriodicOrbit, amplitude: Number | None) -> Prescribed:
+def _prescribed(near: Torus[HarmonicBalance], amplitude: Number | None) -> Prescribed:
     """The amplitude, if one was given, else the frequency of the orbit in doubles."""
     if amplitude is not None:
         return Amplitudes((exact(amplitude, "amplitude"),))

@@ -24,12 +24,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 from numpy.typing import NDArray
 
-from symfpu.bundles.entries import (
-    UnknownPotential,
-    number,
-    number_entry,
-)
-from symfpu.bundles.refined import refined_entries, refined_from
+from symfpu.bundles.entries import UnknownPotential, number, number_entry
 from symfpu.bundles.series import series_entries, series_from, series_tables
 from symfpu.bundles.solutions import FOURIER, solution_entries, solution_from
 from symfpu.errors import InputError
@@ -49,10 +44,9 @@ from symfpu.files.writing import open_to_read
 from symfpu.frames.recorded import Recorded
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import integer, order_of
-from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
-from symfpu.tori.torus import QTorus, RootCertificate
+from symfpu.tori.from_series import FromSeries, RootCertificate
+from symfpu.tori.torus import Torus, comes_from, require_solution
 
 Array = NDArray[Any]
 PACKAGES = (
@@ -67,13 +61,7 @@ PACKAGES = (
     "numba",
     "llvmlite",
 )
-REFINED_KIND = "refined"  # kind of a torus without a series
-READERS: dict[str, Callable[[Archive, Json], QuasiPeriodic]] = {
-    REFINED_KIND: refined_from,
-    FOURIER: solution_from,
-}
-FORMER = ("waves", "refined waves", "precise waves")  # kinds that tori of rings once had
-Result: TypeAlias = LindstedtSeries | QuasiPeriodic
+Result: TypeAlias = LindstedtSeries | Torus
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
 
@@ -111,7 +99,7 @@ class Bundle(Recorded):
     """
 
     series: LindstedtSeries | None
-    torus: QuasiPeriodic | None
+    torus: Torus | None
     verdict: Json | None
     provenance: Json
     test_vectors: tuple[OrbitPoint, ...] = field(repr=False, default=())
@@ -125,11 +113,8 @@ class Bundle(Recorded):
 
     def __repr__(self) -> str:
         torus = "no torus"
-        if isinstance(self.torus, QTorus):
-            orders = (
-                f"frequency order {self.torus.frequency_order}, order {self.torus.order}"
-            )
-            torus = f"QTorus of {orders}"
+        if comes_from(self.torus, FromSeries):
+            torus = f"a torus of {', '.join(self.torus.origin.facts()[:2])}"
         verdict = "a verdict" if self.verdict is not None else "no verdict"
         version = self.provenance["versions"].get("symfpu", "of unknown version")
         saved = f"saved {self.provenance['created']} by symfpu {version}"
@@ -195,14 +180,13 @@ def document(verdict: Json | None, command: str | None, created: datetime | None
 
 def parts_of(result: Result) -> tuple[Json, dict[str, Array]]:
     """The entries of series and torus, and their arrays."""
-    if isinstance(result, RefinedTorus):
-        entries, members = refined_entries(result)
-        return {"series": None, "torus": entries | {"kind": REFINED_KIND}}, members
-    if not isinstance(result, (LindstedtSeries, QTorus)):
+    if isinstance(result, LindstedtSeries):
+        series, torus = result, None
+    elif comes_from(result, FromSeries):
+        series, torus = result.origin.series, _torus_entries(result)
+    else:
         entries, members = solution_entries(result)
         return {"series": None, "torus": entries}, members
-    series = result if isinstance(result, LindstedtSeries) else result.series
-    torus = _torus_entries(result) if isinstance(result, QTorus) else None
     members, layout = series_tables(series)
     return {"series": series_entries(series) | layout, "torus": torus}, members
 
@@ -308,17 +292,19 @@ def _by_seed(entries: Mapping[str, Any], seeds: Sequence[int]) -> dict[int, Any]
     return values
 
 
-def _torus_entries(torus: QTorus) -> Json:
-    history = {str(K): [number_entry(a) for a in row] for K, row in torus.history.items()}
-    proof = torus.certificate
+def _torus_entries(torus: Torus[FromSeries]) -> Json:
+    history = {
+        str(K): [number_entry(a) for a in row] for K, row in torus.origin.history.items()
+    }
+    proof = torus.origin.certificate
     certificate = proof and asdict(proof) | {"radius": _entries_by_seed(proof.radius)}
     return {
         "amplitudes": _entries_by_seed(torus.amplitudes),
         "phases": _entries_by_seed(torus.phases),
-        "frequency_order": torus.frequency_order,
-        "order": torus.order,
+        "frequency_order": torus.origin.frequency_order,
+        "order": torus.origin.order,
         "history": history,
-        "root_residual": repr(float(torus.root_residual)),
+        "root_residual": repr(float(torus.origin.root_residual)),
         "certificate": certificate,
         "warnings": list(torus.warnings),
     }
@@ -328,7 +314,7 @@ def _entries_by_seed(values: Mapping[int, Any]) -> Json:
     return {str(q): number_entry(value) for q, value in values.items()}
 
 
-def _torus(body: Json, series: LindstedtSeries) -> QTorus:
+def _torus(body: Json, series: LindstedtSeries) -> Torus[FromSeries]:
     order = order_of(body["order"])
     frequency_order = integer(body["frequency_order"], "frequency_order", 0)
     if max(order, frequency_order) > series.order or series.frequencies is None:
@@ -336,17 +322,18 @@ def _torus(body: Json, series: LindstedtSeries) -> QTorus:
         raise ValueError(f"no torus of {orders} can come from this series")
     seeds, proof = series.seeds, body["certificate"]
     history = {int(K): tuple(map(number, row)) for K, row in body["history"].items()}
-    return QTorus(
+    amplitudes = _by_seed(body["amplitudes"], seeds)
+    origin = FromSeries(
         series=series,
-        amplitudes=_by_seed(body["amplitudes"], seeds),
-        phases=_by_seed(body["phases"], seeds),
+        amplitudes=tuple(amplitudes[q] for q in seeds),
         frequency_order=frequency_order,
         order=order,
         history=history,
         root_residual=float(body["root_residual"]),
         certificate=proof and _certificate(proof, seeds),
-        warnings=tuple(map(str, body["warnings"])),
     )
+    phases, warnings = _by_seed(body["phases"], seeds), map(str, body["warnings"])
+    return origin.torus(phases, tuple(warnings))
 
 
 def _certificate(proof: Json, seeds: tuple[int, ...]) -> RootCertificate:
@@ -354,7 +341,7 @@ def _certificate(proof: Json, seeds: tuple[int, ...]) -> RootCertificate:
     return RootCertificate(proof["certified"] is True, radius, str(proof["reason"]))
 
 
-def _test_vectors(torus: QuasiPeriodic) -> list[OrbitPoint]:
+def _test_vectors(torus: Torus) -> list[OrbitPoint]:
     """The torus at the start, after a period of the slowest seed, about, and after many."""
     period = 2 * pi / float(min(torus.frequencies))
     times = [0.0, float(f"{period:.4g}"), float(f"{LONG_RUN * period:.4g}")]
@@ -408,13 +395,10 @@ def _orbit_point(entry: Json) -> OrbitPoint:
 
 def _solution(
     archive: Archive, body: Json | None, series: LindstedtSeries | None
-) -> QuasiPeriodic | None:
+) -> Torus | None:
     if series is not None:
         return None if body is None else _torus(body, series)
-    if body is not None and body["kind"] in FORMER:
-        problem = "holds waves of a ring in a format before that of all solutions"
-        raise BundleError(archive.path, problem, "make it again")
-    if body is None or body["kind"] not in READERS:
+    if body is None or body["kind"] != FOURIER:
         kind = None if body is None else body["kind"]
         raise ValueError(f"a torus of kind {kind!r:.40} without a series")
-    return READERS[body["kind"]](archive, body)
+    return solution_from(archive, body)

@@ -1,14 +1,14 @@
 """Solutions without a series, by their coefficients, as plain entries and flat arrays, for files.
 
-Harmonics and coefficients are written alike for all kinds; what made a solution is written by its
-kind, of which a new one is a line in KINDS. Coefficients of many digits are mantissas in words
+Harmonics and coefficients are written alike for all; what made a solution is written by its origin,
+of which a new one is a line in ORIGINS. Coefficients of many digits are mantissas in words
 (symfpu.algebra.words), each with its binary exponent.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import fields
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import prod
 from typing import Any, NamedTuple
 
@@ -18,7 +18,7 @@ from mpmath import libmp
 from numpy.typing import NDArray
 
 from symfpu.algebra.words import IntegerTable
-from symfpu.breathers.balance import PeriodicOrbit
+from symfpu.breathers.balance import HarmonicBalance
 from symfpu.bundles.entries import (
     FIXED,
     chain_entries,
@@ -30,12 +30,15 @@ from symfpu.bundles.entries import (
 )
 from symfpu.errors import InputError
 from symfpu.files.archive import Archive, Json
-from symfpu.numbers.arithmetic import Numbers
+from symfpu.numbers.arithmetic import Numbers, with_digits
 from symfpu.numbers.typed import fraction, fraction_text, integer
-from symfpu.refinement.digits import PreciseTorus
+from symfpu.refinement.digits import IterativeRefinement
+from symfpu.refinement.newton import NewtonStep
+from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.resonances import NearResonance
 from symfpu.tori.columns import columns_of
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
-from symfpu.tori.resummation import ResummedTorus
+from symfpu.tori.resummation import Resummed
+from symfpu.tori.torus import GIVEN, Origin, Torus
 
 Array = NDArray[Any]
 Arrays = dict[str, Array]
@@ -44,28 +47,28 @@ FOURIER = "fourier"  # kind of a solution that is given by its coefficients
 FLOATS, INTEGERS = "<f8", "<i8"
 
 
-class Kind(NamedTuple):
-    """written : of a solution, what made it, as an entry and arrays. read : of its parts, back."""
+class Written(NamedTuple):
+    """entries : of an origin, as an entry and arrays. read : of its torus without it, back."""
 
-    written: Callable[[Any], tuple[Json, Arrays]]
-    read: Callable[[FourierTorus, Archive, Json], QuasiPeriodic]
+    entries: Callable[[Any], tuple[Json, Arrays]]
+    read: Callable[[Torus, Archive, Json], Origin]
 
 
-def solution_entries(solution: QuasiPeriodic) -> tuple[Json, Arrays]:
+def solution_entries(solution: Torus) -> tuple[Json, Arrays]:
     """The entries of a document and the arrays, from which the same solution is made again.
 
-    Raises InputError for another kind.
+    Raises InputError for one of another origin.
     """
-    name = type(solution).__name__
-    if name not in KINDS:
-        kinds = f"one of {', '.join(KINDS)}"
-        raise InputError("result", name, kinds, "save its coefficients: in_doubles()")
-    made, arrays = KINDS[name].written(solution)
+    name = type(solution.origin).__name__
+    if name not in ORIGINS:
+        origins = f"of an origin {', '.join(ORIGINS)}"
+        raise InputError("result", name, origins, "save its coefficients: in_doubles()")
+    made, arrays = ORIGINS[name].entries(solution.origin)
     cosines, layout = packed("cosines", solution.cosines, solution.digits)
     phases = [number_entry(solution.phases[q]) for q in solution.seeds]
     entries: Json = {
         "kind": FOURIER,
-        "class": name,
+        "origin": name,
         **chain_entries(solution.chain),
         "seeds": list(solution.seeds),
         "frequencies": [fraction_text(w) for w in solution.frequencies],
@@ -81,10 +84,10 @@ def solution_entries(solution: QuasiPeriodic) -> tuple[Json, Arrays]:
     return entries, {"harmonics": harmonics, **cosines, **arrays}
 
 
-def solution_from(archive: Archive, body: Json) -> QuasiPeriodic:
+def solution_from(archive: Archive, body: Json) -> Torus:
     """The solution of such entries; ValueError where they do not fit together."""
-    if body["class"] not in KINDS:
-        raise ValueError(f"no solution is of the class {body['class']!r:.40}")
+    if body["origin"] not in ORIGINS:
+        raise ValueError(f"no solution is of the origin {body['origin']!r:.40}")
     chain, travels = chain_from(body, body.get("ends", FIXED)), travels_from(body)
     seeds = chain.seeds_of(body["seeds"])
     frequencies = tuple(fraction(w) for w in body["frequencies"])
@@ -99,10 +102,11 @@ def solution_from(archive: Archive, body: Json) -> QuasiPeriodic:
     cosines = unpacked("cosines", archive, body, (count, columns), digits)
     by_seed = dict(zip(seeds, phases, strict=True))
     known = tuple(map(str, body.get("warnings", ())))
-    parts = FourierTorus(
+    torus = Torus(
         chain, seeds, frequencies, harmonics, cosines, by_seed, digits, travels, known
     )
-    return KINDS[body["class"]].read(parts, archive, body["made"])
+    origin = ORIGINS[body["origin"]].read(torus, archive, body["made"])
+    return replace(torus, origin=origin)
 
 
 # coefficients
@@ -161,71 +165,92 @@ def _finite(archive: Archive, name: str, count: int) -> Array:
     return values
 
 
-# what made them, by kind
+# what made them, by origin
 
 
-def _fields(parts: FourierTorus) -> dict[str, Any]:
-    """The fields of FourierTorus, which others begin with."""
-    return {item.name: getattr(parts, item.name) for item in fields(FourierTorus)}
-
-
-def _periodic(parts: FourierTorus) -> FourierTorus:
-    """The parts, if they are those of a periodic orbit; ValueError otherwise."""
-    numbered = np.arange(len(parts.harmonics))[:, None]
-    if (
-        len(parts.seeds) > 1
-        or len(numbered) < 2
-        or not np.array_equal(parts.harmonics, numbered)
-    ):
-        raise ValueError("the harmonics are not those of a periodic orbit")
-    return parts
-
-
-def _made_plainly(solution: FourierTorus) -> tuple[Json, Arrays]:
+def _plain(origin: Origin) -> tuple[Json, Arrays]:
     return {}, {}
 
 
-def _read_plainly(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
-    return parts
+def _given(torus: Torus, archive: Archive, made: Json) -> Origin:
+    return GIVEN
 
 
-def _made_by_sums(torus: ResummedTorus) -> tuple[Json, Arrays]:
-    return {}, {"disagreement": _floats(torus.disagreement)}
+def _sums(origin: Resummed) -> tuple[Json, Arrays]:
+    return {}, {"disagreement": _floats(origin.disagreement)}
 
 
-def _read_sums(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
-    shape = parts.cosines.shape
-    disagreement = _finite(archive, "disagreement", parts.cosines.size).reshape(shape)
-    return ResummedTorus(**_fields(parts), disagreement=disagreement)
+def _resummed(torus: Torus, archive: Archive, made: Json) -> Origin:
+    disagreement = _finite(archive, "disagreement", torus.cosines.size)
+    return Resummed(disagreement.reshape(torus.cosines.shape))
 
 
-def _made_by_balance(orbit: PeriodicOrbit) -> tuple[Json, Arrays]:
-    return {"iterations": orbit.iterations, "sigma": number_entry(orbit.sigma)}, {}
+def _balance(origin: HarmonicBalance) -> tuple[Json, Arrays]:
+    return {"iterations": origin.iterations, "sigma": number_entry(origin.sigma)}, {}
 
 
-def _read_balance(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
+def _balanced(torus: Torus, archive: Archive, made: Json) -> Origin:
+    numbered = np.arange(len(torus.harmonics))[:, None]
+    if len(torus.seeds) > 1 or not np.array_equal(torus.harmonics, numbered):
+        raise ValueError("the harmonics are not those of a periodic orbit")
     iterations = integer(made["iterations"], "iterations", 0)
-    sigma = float(made["sigma"])
-    return PeriodicOrbit(**_fields(_periodic(parts)), iterations=iterations, sigma=sigma)
+    return HarmonicBalance(iterations, float(made["sigma"]))
 
 
-def _made_precise(torus: PreciseTorus) -> tuple[Json, Arrays]:
-    limits = {"bound": number_entry(torus.bound), "error": number_entry(torus.error)}
-    return {**limits, "sweeps": torus.sweeps}, {}
+def _refinement(origin: IterativeRefinement) -> tuple[Json, Arrays]:
+    limits = {"bound": number_entry(origin.bound), "error": number_entry(origin.error)}
+    return {**limits, "sweeps": origin.sweeps}, {}
 
 
-def _read_precise(parts: FourierTorus, archive: Archive, made: Json) -> QuasiPeriodic:
-    return PreciseTorus(
-        **_fields(parts),
-        bound=number(made["bound"]),
-        error=number(made["error"]),
-        sweeps=integer(made["sweeps"], "sweeps", 0),
+def _refined(torus: Torus, archive: Archive, made: Json) -> Origin:
+    if torus.digits is None:
+        raise ValueError("no digits of a torus that was refined to many")
+    bound, error = number(made["bound"]), number(made["error"])
+    return IterativeRefinement(
+        *with_digits((bound, error), torus.digits), integer(made["sweeps"], "sweeps", 0)
     )
 
 
-KINDS = {
-    FourierTorus.__name__: Kind(_made_plainly, _read_plainly),
-    ResummedTorus.__name__: Kind(_made_by_sums, _read_sums),
-    PeriodicOrbit.__name__: Kind(_made_by_balance, _read_balance),
-    PreciseTorus.__name__: Kind(_made_precise, _read_precise),
+def _newton(origin: Newton) -> tuple[Json, Arrays]:
+    steps = [
+        [repr(step.residual), repr(step.change), repr(step.conditions), step.krylov]
+        for step in origin.steps
+    ]
+    near = [
+        [one.mode, list(one.harmonic), repr(one.divisor), repr(one.coefficient)]
+        for one in origin.near_resonances
+    ]
+    return {"steps": steps, "near_resonances": near}, {}
+
+
+def _by_newton(torus: Torus, archive: Archive, made: Json) -> Origin:
+    if torus.stands or torus.digits is not None:
+        raise ValueError("standing waves, or many digits, by Newton's method")
+    for unit in np.eye(len(torus.seeds), dtype=np.int64):
+        if np.count_nonzero((torus.harmonics == unit).all(axis=1)) != 1:
+            raise ValueError("a seed whose own harmonic is not there, or is there twice")
+    return Newton(
+        tuple(_step(*entry) for entry in made["steps"]),
+        tuple(_near_resonance(*entry) for entry in made["near_resonances"]),
+    )
+
+
+def _step(residual: str, change: str, conditions: str, krylov: int) -> NewtonStep:
+    count = integer(krylov, "krylov", 0)
+    return NewtonStep(float(residual), float(change), float(conditions), count)
+
+
+def _near_resonance(
+    mode: int, harmonic: Sequence[int], divisor: str, coefficient: str
+) -> NearResonance:
+    nu = tuple(map(int, harmonic))
+    return NearResonance(int(mode), nu, float(divisor), float(coefficient))
+
+
+ORIGINS = {
+    Origin.__name__: Written(_plain, _given),
+    Resummed.__name__: Written(_sums, _resummed),
+    HarmonicBalance.__name__: Written(_balance, _balanced),
+    Newton.__name__: Written(_newton, _by_newton),
+    IterativeRefinement.__name__: Written(_refinement, _refined),
 }

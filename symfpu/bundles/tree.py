@@ -31,12 +31,12 @@ from symfpu.files.archive import Archive, Json, write_document
 from symfpu.numbers.arithmetic import ComplexWithDigits, NumberWithDigits, with_digits
 from symfpu.numbers.typed import fraction, fraction_text, integer
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Array = NDArray[Any]
 Classes = Mapping[str, type[Any]]
 
-OWN_FORMAT: tuple[type[Any], ...] = (LindstedtSeries, QuasiPeriodic)
+OWN_FORMAT: tuple[type[Any], ...] = (LindstedtSeries, Torus)
 DTYPES = ("<f8", "<c16", "<i8", "|b1")
 SCALARS: dict[str, type[Any]] = {"float64": np.float64, "complex128": np.complex128}
 PLAIN = (bool, int, str, type(None))

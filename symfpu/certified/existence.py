@@ -44,7 +44,7 @@ from symfpu.numbers.one_sided import above, below, rational
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, energy_of, exact
 from symfpu.series.arguments import digits_of
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 FORMAT = "symfpu existence certificate"
 SCHEMA = 3
@@ -225,7 +225,7 @@ def interval_text(middle: Any, radius: float) -> str:
 
 @public
 def prove_existence(
-    orbit: QuasiPeriodic,
+    orbit: Torus,
     *,
     amplitude: Number | None = None,
     energy: Number | None = None,
@@ -284,7 +284,7 @@ def advice_of(linear: float, fixed: Fixed) -> str:
 
 
 def fixed_value(
-    orbit: QuasiPeriodic,
+    orbit: Torus,
     amplitude: Number | None,
     energy: Number | None,
     half_width: Number,
@@ -330,9 +330,9 @@ def on_line(bounds: ProofBounds, line: Line | None) -> ProofBounds:
     return replace(bounds, length=line.length, drift=line.drift)
 
 
-def checked_orbit(orbit: object) -> QuasiPeriodic:
+def checked_orbit(orbit: object) -> Torus:
     """An orbit that the theorem is about; InputError for any other, by name."""
-    if not isinstance(orbit, QuasiPeriodic):
+    if not isinstance(orbit, Torus):
         name, chain = type(orbit).__name__, getattr(orbit, "chain", None)
         given = name if chain is None else f"{name} of {chain!r}"
         allowed = "a solution of one angle of a chain with fixed ends, or a travelling wave"

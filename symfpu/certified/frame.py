@@ -26,7 +26,7 @@ from symfpu.normal.search import normal_modes
 from symfpu.normal.torus import checked_modes
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.refinement.lattice import Floats
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 FRAME_BITS = 60  # of the coefficients of the frame
 RATE_BITS = 70  # of sigma and of the twist
@@ -50,7 +50,7 @@ class Direction:
     twist: tuple[Fraction, ...] = ()
 
 
-def directions_of(solution: QuasiPeriodic, tell: Progress) -> tuple[Direction, ...]:
+def directions_of(solution: Torus, tell: Progress) -> tuple[Direction, ...]:
     """s directions of the actions, then N-1-s normal ones, without their conjugates.
 
     Raises NoTwist, NoNormalModes, InputError.
@@ -66,14 +66,14 @@ def directions_of(solution: QuasiPeriodic, tell: Progress) -> tuple[Direction, .
     return (*_of_actions(torus), *normal)
 
 
-def without_rounding(torus: FourierTorus) -> FourierTorus:
+def without_rounding(torus: Torus) -> Torus:
     """Without harmonics that doubles cannot tell from none, of which many digits have many."""
     sizes = np.abs(torus.cosines.astype(float)).max(axis=1)
     kept = sizes > SMALLEST * sizes.max()
     return replace(torus, harmonics=torus.harmonics[kept], cosines=torus.cosines[kept])
 
 
-def _of_actions(torus: FourierTorus) -> list[Direction]:
+def _of_actions(torus: Torus) -> list[Direction]:
     """dK/dI_i with domega/dI_i, times powers of 2 that make the largest coefficient about 1."""
     changes = changes_by_action(torus)
     found = []
@@ -108,7 +108,7 @@ def in_particles(table: Floats) -> Floats:
 class Polish:
     """Eigenfunctions to rounding, with as many harmonics as doubles can tell."""
 
-    def __init__(self, torus: FourierTorus) -> None:
+    def __init__(self, torus: Torus) -> None:
         known = coefficients_by_harmonic(torus)
         functions, s = (torus.chain.N + 1) // 2, len(torus.seeds)
         chosen, _ = chosen_harmonics(known, functions, s, HEIGHT)

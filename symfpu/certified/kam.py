@@ -20,7 +20,7 @@ from symfpu.certified.series import Series
 from symfpu.errors import InputError
 from symfpu.files.progress import unheard
 from symfpu.refinement.lattice import Floats
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 LOSS = 12  # the first step takes rho / 12 of the strip, as published theorems do
 STRIPS = tuple(0.05 * k for k in range(1, 41))
@@ -54,7 +54,7 @@ class KamSizes:
     resonance: int
 
 
-def kam_sizes(torus: QuasiPeriodic, polynomial: tuple[int, int, int]) -> KamSizes:
+def kam_sizes(torus: Torus, polynomial: tuple[int, int, int]) -> KamSizes:
     """The sizes for a torus of N = 3 whose omega_2/omega_1 stands for an irrational number.
 
     polynomial : integers (a, b, c) of a x^2 + b x + c, without rational roots; the ratio is a

@@ -29,7 +29,7 @@ from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import with_digits
 from symfpu.numbers.one_sided import above
 from symfpu.numbers.public import public
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 FORMAT = "symfpu torus certificate"
 SCHEMA = 2
@@ -141,9 +141,7 @@ def torus_text(
 
 
 @public
-def prove_residual(
-    torus: QuasiPeriodic, *, progress: Progress | None = None
-) -> ResidualProof:
+def prove_residual(torus: Torus, *, progress: Progress | None = None) -> ResidualProof:
     """A proof of how well a torus solves the equations of motion, at all angles at once.
 
     torus : of two or more angles, fixed ends and a polynomial potential, from `refine` and its

@@ -24,7 +24,7 @@ from symfpu.certified.layout import Layout, layout_of
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 DOUBLE_DIGITS = 16
 SPARE_DIGITS = 6  # of the integers beyond those of the orbit
@@ -65,7 +65,7 @@ class RoundedOrbit:
         return np.array(scaled)
 
 
-def rounded_orbit(orbit: QuasiPeriodic, digits: int | None = None) -> RoundedOrbit:
+def rounded_orbit(orbit: Torus, digits: int | None = None) -> RoundedOrbit:
     """The integers nearest to an orbit; what is below their last place is left out.
 
     digits : of the integers, the orbit's own unless more are asked for.
@@ -83,7 +83,7 @@ def rounded_orbit(orbit: QuasiPeriodic, digits: int | None = None) -> RoundedOrb
     return RoundedOrbit(orbit.chain, orbit.seed, orbit.frequency, bits, rows, digits)
 
 
-def _of_modes(orbit: QuasiPeriodic) -> Numbers:
+def _of_modes(orbit: Torus) -> Numbers:
     """sqrt(2/N) Omega_q Q_q at the working precision of mpmath."""
     chain, cosines = orbit.chain, orbit.by_harmonic()
     root = mpmath.sqrt(mpmath.mpf(2) / chain.N)
@@ -92,7 +92,7 @@ def _of_modes(orbit: QuasiPeriodic) -> Numbers:
     return np.asarray(as_mpf * np.array(units, dtype=object))
 
 
-def _of_wave(torus: QuasiPeriodic) -> Numbers:
+def _of_wave(torus: Torus) -> Numbers:
     """N^(-1/2) Omega_m c[n] of a wave at harmonic n, in the column of its folded mode m."""
     N, layout = torus.chain.N, layout_of(torus.chain, torus.seed)
     coefficients = torus.by_harmonic()[:, 0].tolist()

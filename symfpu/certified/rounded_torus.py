@@ -27,7 +27,7 @@ from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.refinement.lattice import Ints
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.torus import Torus, require_solution
 
 DOUBLE_DIGITS = 16
 SPARE_BITS = 20  # of the integers beyond the digits of the torus
@@ -125,7 +125,7 @@ def rounded_torus(solution: object) -> RoundedTorus:
     return RoundedTorus(torus.chain, torus.seeds, frequencies, bits, series, digits)
 
 
-def checked_torus(solution: object) -> QuasiPeriodic:
+def checked_torus(solution: object) -> Torus:
     """A torus of two angles or more of fixed ends and a polynomial V, or InputError."""
     torus = require_solution(solution, "torus")
     chain = torus.chain

@@ -42,7 +42,7 @@ from symfpu.numbers.counted import counted
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 FORMAT = "symfpu stability certificate"
 SCHEMA = 1
@@ -199,7 +199,7 @@ class StabilityProof(Tabled):
 
 @public
 def prove_stability(
-    solution: ExistenceProof | QuasiPeriodic,
+    solution: ExistenceProof | Torus,
     *,
     amplitude: Number | None = None,
     energy: Number | None = None,
@@ -259,7 +259,7 @@ def require_no_ring(solution: object) -> None:
 
 
 def proof_of(
-    solution: ExistenceProof | QuasiPeriodic,
+    solution: ExistenceProof | Torus,
     amplitude: Number | None,
     energy: Number | None,
 ) -> ExistenceProof:

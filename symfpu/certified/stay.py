@@ -38,7 +38,7 @@ from symfpu.frames.tabled import Tabled
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, exact
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 TIME = 10**9  # the paper's longest orbits
 LAST = Fraction(511, 512)  # of the time to the farthest distance
@@ -184,7 +184,7 @@ class StayProof(Tabled):
 
 @public
 def prove_stay(
-    torus: QuasiPeriodic, *, time: Number = TIME, progress: Progress | None = None
+    torus: Torus, *, time: Number = TIME, progress: Progress | None = None
 ) -> StayProof:
     """A proof of how near to a computed torus an orbit stays that starts on it, and for how long.
 

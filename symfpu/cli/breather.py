@@ -39,7 +39,7 @@ from symfpu.files.progress import NO_FRACTION
 from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import save
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 DOUBLE_ENERGY = (
     "the energy is met in doubles; the digits are of the orbit with the frequency found"
@@ -86,7 +86,7 @@ def breather(
     doubts: tuple[str, ...]
     doubts = (DOUBLE_ENERGY,) if energy is not None and places is not None else ()
     with progress_bar("Newton's method") as advance:
-        orbit: QuasiPeriodic
+        orbit: Torus
         with warnings.catch_warnings(record=True) as several:
             warnings.simplefilter("always", UserWarning)
             orbit = _found(chain, mode, omega, amplitude, energy)
@@ -102,7 +102,7 @@ def breather(
             verdict = {"verdict": "periodic orbit", "reasons": list(doubts)}
             save(file, orbit, verdict=verdict, command=shlex.join(["symfpu", *context.obj]))
         draw(orbit.plot, picture)
-    record = solution_record(orbit, stability, doubts)
+    record = solution_record(orbit, found=stability, warnings=doubts)
     if as_json:
         print_json(record)
         return
@@ -114,7 +114,7 @@ def breather(
 
 def _found(
     chain: Chain, seed: int, omega: str | None, amplitude: str | None, energy: str | None
-) -> QuasiPeriodic:
+) -> Torus:
     if chain.periodic:
         return travelling_breather(
             chain, seed, frequency=omega, amplitude=amplitude, energy=energy

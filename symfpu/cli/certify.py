@@ -36,7 +36,7 @@ from symfpu.reports.certified import (
 from symfpu.reports.existence import existence_record, existence_text
 from symfpu.reports.stability_proof import stability_record, stability_text
 from symfpu.saved.results import load
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 AmplitudeOption = Annotated[
     str | None,
@@ -135,21 +135,21 @@ def _refuse(options: Mapping[str, Any], solution: str) -> None:
             raise InputError(name, value, f"none for {solution}", "leave it out")
 
 
-def _existence(orbit: QuasiPeriodic, options: Mapping[str, Any]) -> ExistenceProof:
+def _existence(orbit: Torus, options: Mapping[str, Any]) -> ExistenceProof:
     return prove_existence(
         orbit, **{name: value for name, value in options.items() if value is not None}
     )
 
 
 def _of_breather(
-    orbit: QuasiPeriodic,
+    orbit: Torus,
     options: Mapping[str, Any],
     stability: bool,
     progress: Progress,
 ) -> Proof:
     if not stability:
         return _existence(orbit, options)
-    assert isinstance(orbit, QuasiPeriodic)
+    assert isinstance(orbit, Torus)
     width = {"half_width": options["half_width"]}
     _refuse(width, "--stability, which is of one orbit")
     proof = _existence(orbit, options)
@@ -157,7 +157,7 @@ def _of_breather(
 
 
 def _torus_proof(
-    torus: QuasiPeriodic, time: str | None, residual: bool, progress: Progress
+    torus: Torus, time: str | None, residual: bool, progress: Progress
 ) -> Proof:
     if not residual:
         return prove_stay(torus, time=TIME if time is None else time, progress=progress)

@@ -11,7 +11,7 @@ from symfpu.chain.chain import Chain
 from symfpu.cli.choices import choice
 from symfpu.cli.terminal import whole
 from symfpu.errors import InputError
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 ENDS = ("fixed", "periodic")
 BONDS = typer.Option(
@@ -53,7 +53,7 @@ def chain_of(
     return Chain(N, alpha, beta, potential=potential, ends=ends)
 
 
-def solution_of(bundle: Bundle, file: str) -> QuasiPeriodic:
+def solution_of(bundle: Bundle, file: str) -> Torus:
     """The solution of a file; InputError, with what it holds, where there is none."""
     if bundle.torus is None:
         kind = type(bundle.result).__name__

@@ -45,17 +45,13 @@ from symfpu.families.normal_events import RESONANCE_LENGTH
 from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_folder, write_rows
 from symfpu.numbers.counted import counted
-from symfpu.refinement.digits import PreciseTorus
 from symfpu.refinement.harmonics import MOST_HARMONICS
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.tori import refine
-from symfpu.reports.family import (
-    family_table,
-    family_text,
-    refined_text,
-)
-from symfpu.reports.solution import solution_record, solution_text
+from symfpu.reports.family import family_table, family_text
+from symfpu.reports.solution import refined_text, solution_record, solution_text
 from symfpu.saved.results import load, save
+from symfpu.tori.torus import Torus, comes_from
 
 ResonanceOption = Annotated[
     str,
@@ -140,7 +136,7 @@ def refine_file(
         "most_harmonics": most_harmonics,
     }
     with progress_bar("Newton's method") as advance:
-        refined: RefinedTorus | PreciseTorus = refine(torus, **given, progress=advance)
+        refined: Torus = refine(torus, **given, progress=advance)
         if kept:
             command = shlex.join(["symfpu", *context.obj])
             save(kept, refined, verdict=verdict_of(refined), command=command)
@@ -148,20 +144,19 @@ def refine_file(
     if as_json:
         print_json(refined.record())
     else:
-        if isinstance(refined, PreciseTorus):
-            say(solution_text(solution_record(refined)))
-        else:
+        if comes_from(refined, Newton):
             say(refined_text(refined))
+        else:
+            say(solution_text(solution_record(refined)))
         if kept:
             print(f"written: {kept}")
         say_drawn(picture)
 
 
-def verdict_of(torus: RefinedTorus | PreciseTorus) -> dict[str, Any]:
+def verdict_of(torus: Torus) -> dict[str, Any]:
     """What a file says of a refined torus."""
-    if isinstance(torus, PreciseTorus):
-        return {"verdict": "torus", "reasons": []}
-    return {"verdict": torus.verdict, "reasons": list(torus.warnings)}
+    verdict = "doubtful" if torus.warnings else "torus"
+    return {"verdict": verdict, "reasons": list(torus.warnings)}
 
 
 def by_seed_or_none(

@@ -11,12 +11,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 import typer
 
-from symfpu.action_angle.foretold import (
-    ForetoldIndices,
-    flow_of,
-    indices_by,
-    settled_text,
-)
+from symfpu.action_angle.foretold import ForetoldIndices, flow_of, indices_by, settled_text
 from symfpu.action_angle.linear_flow import LinearFlow
 from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, say_kept
@@ -65,7 +60,7 @@ from symfpu.normal.search import normal_modes
 from symfpu.normal.torus import checked_modes
 from symfpu.plots.indices import foretold as draw_foretold
 from symfpu.reports.tables import fifteen_digits
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 
 @app.command("gali", epilog="Example: symfpu gali torus.symfpu --time 1e6 -o out")
@@ -184,7 +179,7 @@ def gali(
 class _Forecast(NamedTuple):
     """The linearised flow about a torus: what foretells its indices."""
 
-    torus: QuasiPeriodic
+    torus: Torus
     flow: LinearFlow
 
     def of(self, found: AlignmentIndices, seed: int) -> ForetoldIndices:

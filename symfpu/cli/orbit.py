@@ -49,7 +49,7 @@ from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_file, write_rows
 from symfpu.reports.tables import fifteen_digits, text_table
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 LOST_ENERGY = 1e-3  # relative
@@ -146,7 +146,7 @@ def _record(made: Orbit, start: Start) -> dict[str, Any]:
     return made.record() | {"start": start.record} | _comparison(made, start.torus)
 
 
-def _comparison(made: Orbit, torus: QuasiPeriodic | None) -> dict[str, Any]:
+def _comparison(made: Orbit, torus: Torus | None) -> dict[str, Any]:
     """Deviations relative to the largest coordinate of the torus at the samples."""
     names = "largest_deviation", "largest_deviation_time", "torus_average_spectrum"
     if torus is None:

@@ -39,13 +39,15 @@ from symfpu.cli.tori import print_solution
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.reports.torus import assessment_text, torus_record
+from symfpu.reports.series import assessment_text
+from symfpu.reports.solution import solution_record
 from symfpu.saved.results import save
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.at_energy import torus_at_energy
 from symfpu.tori.frequencies import torus_at_amplitudes
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment, assess
 
 EQUAL_SHARES = "equal time averages of E_q of the seeds; --shares S,S,... for others"
@@ -205,20 +207,22 @@ def _shares_text(wish: Wish) -> str:
 
 def _found(
     chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
-) -> tuple[QTorus, Assessment, dict[str, Any]]:
+) -> tuple[Torus[FromSeries], Assessment, dict[str, Any]]:
     """The torus, the verdict on its series, and both for JSON."""
     if chain.periodic:
         _refuse_on_a_ring(wish)
     torus = _torus(chain, seeds, wish, advance)
-    assessment = assess(torus.series, torus, progress=advance)
-    record = torus_record(torus, assessment)
+    assessment = assess(torus.origin.series, torus, progress=advance)
+    record = solution_record(torus, assessment=assessment)
     if wish.energy is not None:
         shares = wish.shares or dict.fromkeys(seeds, "1")
         record["energy_shares"] = {str(q): shares[q] for q in torus.seeds}
     return torus, assessment, record
 
 
-def _torus(chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress) -> QTorus:
+def _torus(
+    chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
+) -> Torus[FromSeries]:
     if wish.frequencies is not None:
         series = lindstedt(
             chain, seeds, wish.frequencies, wish.order, digits=wish.digits, progress=advance

@@ -40,7 +40,7 @@ from symfpu.reports.normal import (
     series_text,
 )
 from symfpu.saved.results import load
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 MEMBERS = 9
 TO_AMPLITUDES = "to-amplitudes"
@@ -132,7 +132,7 @@ def _refuse(option: str, given: str | None, allowed: str) -> None:
 
 
 def _modes(
-    torus: QuasiPeriodic, chosen: list[int] | None, length: int, order: int | None
+    torus: Torus, chosen: list[int] | None, length: int, order: int | None
 ) -> tuple[NormalModes, list[BySeries]]:
     """Normal modes, and those by series if an order is given."""
     with progress_bar("normal modes") as advance:
@@ -151,7 +151,7 @@ def _modes(
 
 
 def _line(
-    torus: QuasiPeriodic,
+    torus: Torus,
     amplitudes: str,
     members: str | None,
     chosen: list[int] | None,

@@ -16,7 +16,7 @@ from symfpu.dynamics.state_files import read_state
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.saved.results import load
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 StartArgument = Annotated[str | None, typer.Argument(help=SAVED_SOLUTION, metavar="[FILE]")]
 OwnBonds = Annotated[
@@ -70,7 +70,7 @@ class Start:
     chain: Chain
     Q: Numbers
     P: Numbers
-    torus: QuasiPeriodic | None
+    torus: Torus | None
     record: dict[str, Any]
 
 

@@ -28,7 +28,7 @@ from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.notebook import latex_lines
 from symfpu.numbers.typed import decimal
-from symfpu.reports.solution import frequencies_record
+from symfpu.reports.series import frequencies_record
 from symfpu.saved.results import save
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.closed_forms import closed_form

@@ -5,36 +5,30 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.bundles.bundle import Bundle
-from symfpu.cli.terminal import (
-    FileArgument,
-    JsonOption,
-    path_named,
-    print_json,
-    say,
-    warn,
-)
+from symfpu.cli.terminal import FileArgument, JsonOption, path_named, print_json, say, warn
 from symfpu.cli.verbs import app
 from symfpu.numbers.arithmetic import text
-from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.reports.family import refined_text
-from symfpu.reports.solution import solution_text
+from symfpu.refinement.refined_torus import Newton
+from symfpu.reports.solution import refined_text, solution_text
 from symfpu.saved.results import load
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus, comes_from
 
 
-def _print_torus(torus: QTorus, record: dict[str, Any]) -> None:
-    say(torus.series)
+def _print_torus(torus: Torus[FromSeries], record: dict[str, Any]) -> None:
+    say(torus.origin.series)
     for q, amplitude in record["amplitudes"].items():
         say(f"seed {q:<4} omega {record['frequencies'][q]:<20} amplitude {amplitude}")
-    if torus.certificate is not None:
-        radius = text(max(torus.certificate.radius.values()), 2)
+    if torus.origin.certificate is not None:
+        radius = text(max(torus.origin.certificate.radius.values()), 2)
         say(
             f"exactly one root within {radius}: certified"
-            if torus.certificate.certified
-            else f"root not certified: {torus.certificate.reason}"
+            if torus.origin.certificate.certified
+            else f"root not certified: {torus.origin.certificate.reason}"
         )
-    say(f"frequency order {torus.frequency_order}, coordinate order {torus.order}")
+    say(
+        f"frequency order {torus.origin.frequency_order}, coordinate order {torus.origin.order}"
+    )
     say(f"energy H           {record['energy']}   (at t = 0)")
     average = record["average_harmonic_energy"]
     say(
@@ -60,7 +54,7 @@ def show(
         return
     record = {} if solution is None else solution.record()
     verdict = bundle.verdict or {}
-    if verdict and not isinstance(solution, RefinedTorus):
+    if verdict and not comes_from(solution, Newton):
         say(f"verdict: {verdict.get('verdict')}")
     _print_held(bundle, record)
     for reason in verdict.get("reasons", []):
@@ -74,15 +68,15 @@ def _print_held(bundle: Bundle, record: dict[str, Any]) -> None:
     solution = bundle.torus
     if solution is None:
         say(bundle.result)
-    elif isinstance(solution, RefinedTorus):
+    elif comes_from(solution, Newton):
         say(refined_text(solution))
     else:
         print_solution(solution, record)
 
 
-def print_solution(solution: QuasiPeriodic, record: dict[str, Any]) -> None:
+def print_solution(solution: Torus, record: dict[str, Any]) -> None:
     """A solution for a reader, from its record."""
-    if isinstance(solution, QTorus):
+    if comes_from(solution, FromSeries):
         _print_torus(solution, record)
     else:
         say(solution_text(record))

@@ -22,7 +22,7 @@ from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.arithmetic import DOUBLES
 from symfpu.numbers.public import public
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, require_fixed_solution
+from symfpu.tori.torus import Torus, require_fixed_solution
 
 Floats = NDArray[np.float64]
 Angles = Floats | None  # (s,), or those of the torus
@@ -66,7 +66,7 @@ class Evaluator:
     Evaluator(Chain(N=8, alpha=0.3), seeds=1, 6 harmonics, backend='numpy')
     """
 
-    torus: QuasiPeriodic = field(repr=False)
+    torus: Torus = field(repr=False)
     backend: str
     functions: Backend = field(repr=False)
 
@@ -138,7 +138,7 @@ def _finite(argument: str, values: Any, allowed: str) -> Floats:
 
 
 @public
-def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Evaluator:
+def compile_evaluator(torus: Torus, *, backend: str | None = None) -> Evaluator:
     """The torus as fast functions of time and phases, in doubles.
 
     torus : any quasi-periodic solution with numbers for amplitudes (Eqs. qser, serabs1);
@@ -151,11 +151,11 @@ def compile_evaluator(torus: QuasiPeriodic, *, backend: str | None = None) -> Ev
     'c' finds no compiler, or with the compiler's first line if it fails.
 
     >>> from symfpu.chain.chain import Chain
-    >>> from symfpu.tori.quasiperiodic import FourierTorus
+    >>> from symfpu.tori.quasiperiodic import Torus
     >>> from fractions import Fraction
     >>> cosines = np.array([[1.0, 0.0, 0.0]])
     >>> chain, omega, harmonics = Chain(4, alpha=1), Fraction(1, 2), np.array([[1]])
-    >>> mode = FourierTorus(chain, (1,), (omega,), harmonics, cosines, {1: 0.0})
+    >>> mode = Torus(chain, (1,), (omega,), harmonics, cosines, {1: 0.0})
     >>> functions = compile_evaluator(mode, backend="numpy")
     >>> functions.P(0.0, phases={1: 1.5707963267948966}).tolist()
     [-0.5, 0.0, 0.0]
@@ -284,7 +284,7 @@ def _pointer(values: Floats | None) -> ctypes.c_void_p | None:
 class NumpyFunctions:
     """The torus in doubles, evaluated by matrix products."""
 
-    torus: FourierTorus
+    torus: Torus
 
     def Q(self, t: Floats, phases: Angles) -> Floats:
         return self._with(phases).Q(t)
@@ -298,7 +298,7 @@ class NumpyFunctions:
     def energy(self, t: Floats, phases: Angles) -> Floats:
         return np.asarray(self._with(phases).energy(t))
 
-    def _with(self, phases: Angles) -> FourierTorus:
+    def _with(self, phases: Angles) -> Torus:
         if phases is None:
             return self.torus
         by_seed = zip(self.torus.seeds, phases.tolist(), strict=True)

@@ -16,18 +16,14 @@ from symfpu.codegen.languages.numpy import NUMPY
 from symfpu.codegen.languages.octave import OCTAVE
 from symfpu.codegen.series_program import series_facts, series_program
 from symfpu.codegen.templating import Language
-from symfpu.codegen.torus_program import (
-    DOUBLE_DIGITS,
-    torus_facts,
-    torus_program,
-)
+from symfpu.codegen.torus_program import DOUBLE_DIGITS, torus_facts, torus_program
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_text
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.public import public
 from symfpu.series.series import LindstedtSeries, require_series
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_fixed_solution
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus, comes_from, require_fixed_solution
 
 LANGUAGES = {
     "c": C,
@@ -43,7 +39,7 @@ LONGEST_NAME = 40  # with a suffix it stays below the 63 characters of Fortran
 
 @public
 def export(
-    solution: QuasiPeriodic | LindstedtSeries,
+    solution: Torus | LindstedtSeries,
     language: str,
     path: str | Path,
     *,
@@ -157,13 +153,13 @@ def legal_name(name: str) -> str:
     return name
 
 
-def _orders(torus: QuasiPeriodic) -> dict[str, str]:
+def _orders(torus: Torus) -> dict[str, str]:
     """Orders and amplitudes of a torus that has them."""
-    if not isinstance(torus, QTorus):
+    if not comes_from(torus, FromSeries):
         return {}
     digits = torus.digits or DOUBLE_DIGITS
     amplitudes = [f"A_{q} = {text(a, digits)}" for q, a in torus.amplitudes.items()]
     return {
-        "orders": f"frequencies {torus.frequency_order}, coordinates {torus.order}",
+        "orders": f"frequencies {torus.origin.frequency_order}, coordinates {torus.origin.order}",
         "amplitudes": ", ".join(amplitudes),
     }

@@ -20,7 +20,8 @@ from symfpu.files.writing import write_text
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 DIGITS = 30  # of the series; doubles have 17
 
@@ -47,7 +48,7 @@ class Example(NamedTuple):
         words.append(f"--order {self.order} --digits {DIGITS} -o {name}.symfpu")
         return " ".join(words)
 
-    def torus(self) -> QTorus:
+    def torus(self) -> Torus[FromSeries]:
         """The torus itself."""
         series = lindstedt(
             self.chain,
@@ -115,7 +116,7 @@ def build(folder: Path) -> Path:
             manifest |= _written(folder, name, torus, language, {})
             if example.series_orders:
                 manifest |= _written(
-                    folder, name, torus.series, language, example.series_orders
+                    folder, name, torus.origin.series, language, example.series_orders
                 )
     return write_manifest(folder, manifest)
 
@@ -123,7 +124,7 @@ def build(folder: Path) -> Path:
 def _written(
     folder: Path,
     name: str,
-    solution: QTorus | LindstedtSeries,
+    solution: Torus[FromSeries] | LindstedtSeries,
     language: str,
     orders: Mapping[str, Any],
 ) -> Manifest:

@@ -22,7 +22,7 @@ from symfpu.codegen.bond_potential import BondPotential, bond_potential
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text
 from symfpu.numbers.typed import decimal
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 CHECK_PERIODS = (
     0.0,
@@ -87,9 +87,7 @@ class TorusProgram:
         return highest_numbers(harmonics, len(self.seeds))
 
 
-def torus_program(
-    torus: QuasiPeriodic, name: str, facts: Mapping[str, str]
-) -> TorusProgram:
+def torus_program(torus: Torus, name: str, facts: Mapping[str, str]) -> TorusProgram:
     """Order the numbers of a torus for code; facts come first in the header."""
     chain, seeds = torus.chain, torus.seeds
     blocks = _blocks(torus)
@@ -111,7 +109,7 @@ def torus_program(
     )
 
 
-def _blocks(torus: QuasiPeriodic) -> list[Block]:
+def _blocks(torus: Torus) -> list[Block]:
     """Of both parities, as far as they have coefficients; harmonics without one are left out."""
     parities = torus.harmonics @ np.array(torus.seeds) % 2
     modes = np.arange(1, torus.chain.N)
@@ -131,7 +129,7 @@ def _blocks(torus: QuasiPeriodic) -> list[Block]:
     return blocks
 
 
-def _require_parity(torus: QuasiPeriodic, rows: Ints, others: NDArray[np.bool_]) -> None:
+def _require_parity(torus: Torus, rows: Ints, others: NDArray[np.bool_]) -> None:
     """InputError where harmonics appear in modes of the other parity, beyond rounding."""
     largest = np.abs(torus.cosines).max(initial=0)
     strange = np.abs(torus.cosines[rows][:, others]).max(initial=0)
@@ -150,7 +148,7 @@ def highest_numbers(harmonics: Sequence[Ints], s: int) -> tuple[int, ...]:
     return tuple(largest.tolist())
 
 
-def torus_facts(torus: QuasiPeriodic) -> dict[str, str]:
+def torus_facts(torus: Torus) -> dict[str, str]:
     """The header of a torus: chain, seeds, frequencies; exact numbers as they were typed."""
     seeds = map(str, torus.seeds)
     frequencies = map(decimal, torus.frequencies)
@@ -198,7 +196,7 @@ def blocks_or_zero(program: TorusProgram) -> tuple[Block, ...]:
     return (Block((1,), harmonic, zero),)
 
 
-def _check(torus: QuasiPeriodic) -> Check:
+def _check(torus: Torus) -> Check:
     """Test vectors of the stored coefficients, evaluated with more digits than these have."""
     places = DOUBLE_DIGITS if torus.digits is None else torus.digits
     exact = replace_digits(torus, places + EXTRA_DIGITS)
@@ -221,7 +219,7 @@ def texts(rows: Iterable[Iterable[Any]], digits: int) -> tuple[tuple[str, ...], 
     return tuple(table)
 
 
-def _check_times(torus: QuasiPeriodic) -> list[float]:
+def _check_times(torus: Torus) -> list[float]:
     """The same numbers in decimal and in binary."""
     slowest = min(map(float, torus.frequencies))
     period = 2 * np.pi / slowest
@@ -229,13 +227,13 @@ def _check_times(torus: QuasiPeriodic) -> list[float]:
     return [round(t * 64) / 64 for t in times]
 
 
-def replace_digits(torus: QuasiPeriodic, digits: int) -> FourierTorus:
+def replace_digits(torus: Torus, digits: int) -> Torus:
     """The same coefficients, to be evaluated with so many digits."""
     with MULTIPRECISION.context(digits):
         cosines = np.asarray(exact_numbers(torus.cosines), dtype=object)
         phases = {q: mpmath.mpf(phi) for q, phi in torus.phases.items()}
     same = torus.chain, torus.seeds, torus.frequencies, torus.harmonics
-    return FourierTorus(*same, cosines, phases, digits)
+    return Torus(*same, cosines, phases, digits)
 
 
 # A double is the number it is here, not its shortest decimal.

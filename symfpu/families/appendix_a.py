@@ -43,7 +43,8 @@ from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import root_squares, shifts, solve_amplitudes
 from symfpu.tori.broyden import NotFound
 from symfpu.tori.frequencies import Frequencies, Plan, checked_plan, positive_by_seed
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 
@@ -79,7 +80,7 @@ class AppendixAMember:
     increment : Delta epsilon_l of the family, the growth of the linear specific energy asked for.
     """
 
-    torus: QTorus
+    torus: Torus[FromSeries]
     increment: float
 
     def __repr__(self) -> str:
@@ -274,12 +275,12 @@ def member_at(
 
     Raises NoFurtherMember.
     """
-    series = before.torus.series
+    series = before.torus.origin.series
     plan = checked_plan(
         series.chain,
         series.order,
-        before.torus.frequency_order,
-        before.torus.order,
+        before.torus.origin.frequency_order,
+        before.torus.origin.order,
         None,
         None,
     )
@@ -391,7 +392,7 @@ class _Family:
         Raises NoFurtherMember.
         """
 
-        def torus(x: float) -> QTorus:
+        def torus(x: float) -> Torus[FromSeries]:
             amplitudes = math.exp(x) * trial
             return self._torus(self.trial_shifts(amplitudes), amplitudes**2)
 
@@ -405,12 +406,12 @@ class _Family:
 
         Raises NoFurtherMember.
         """
-        start, end = (shifts(m.torus.series) for m in (before, last))
+        start, end = (shifts(m.torus.origin.series) for m in (before, last))
         near, far = (
             np.array([float(a) ** 2 for a in m.amplitudes.values()]) for m in (before, last)
         )
 
-        def torus(part: float) -> QTorus:
+        def torus(part: float) -> Torus[FromSeries]:
             return self._torus(start + part * (end - start), near + part * (far - near))
 
         _, found = self._solved(torus, level, (0.0, 1.0), self.linear + end)
@@ -418,11 +419,11 @@ class _Family:
 
     def _solved(
         self,
-        torus: Callable[[float], QTorus],
+        torus: Callable[[float], Torus[FromSeries]],
         level: Level,
         bracket: tuple[float, float] | None,
         tried: Floats,
-    ) -> tuple[float, QTorus]:
+    ) -> tuple[float, Torus[FromSeries]]:
         """Where a line of tori has an energy, and the torus there.
 
         bracket : on the line; None looks for one, ln A along the line. tried : frequencies to be
@@ -456,9 +457,12 @@ class _Family:
             before, last = last, AppendixAMember(self._next(before, last), last.increment)
             yield last
 
-    def _next(self, before: AppendixAMember, last: AppendixAMember) -> QTorus:
+    def _next(self, before: AppendixAMember, last: AppendixAMember) -> Torus[FromSeries]:
         """One step (Eqs. delome to omeprime)."""
-        shift, earlier = shifts(last.torus.series), shifts(before.torus.series)
+        shift, earlier = (
+            shifts(last.torus.origin.series),
+            shifts(before.torus.origin.series),
+        )
         squares = np.array([float(a) ** 2 for a in last.amplitudes.values()])
         growth = self._growth(last.increment)
         aimed = shift
@@ -511,7 +515,7 @@ class _Family:
         )
         return np.asarray(root_squares(series, self.plan.frequency_order, guess)[0])
 
-    def _torus(self, shift: Floats, guess: Floats) -> QTorus:
+    def _torus(self, shift: Floats, guess: Floats) -> Torus[FromSeries]:
         series = lindstedt(self.chain, self.seeds, self._exact(shift), self.plan.order)
         K, coordinates = self.plan.frequency_order, self.plan.coordinate_order
         return solve_amplitudes(

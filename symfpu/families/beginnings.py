@@ -13,19 +13,18 @@ from symfpu.breathers.from_rest import FIRST_SHIFT, FIRST_STRETCH
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import SymfpuError
-from symfpu.families.extrapolation import (
-    coefficients_at,
-)
+from symfpu.families.extrapolation import coefficients_at
 from symfpu.families.members import Level, Member, linear_by_mode
 from symfpu.files.progress import Progress
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.long_doubles import DIGITS
 from symfpu.refinement.conditions import Amplitude, Condition, ratio_conditions
-from symfpu.refinement.refined_torus import TOLERANCE, NoTorus, RefinedTorus, refined_torus
+from symfpu.refinement.refined_torus import TOLERANCE, Newton, NoTorus, refined_torus
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
+from symfpu.tori.from_series import FromSeries
 from symfpu.tori.short_waves import shifts_by_squares, short_waves
-from symfpu.tori.torus import QTorus
+from symfpu.tori.torus import Torus
 
 GUESS_ORDER = 2  # of the series that begins a family
 # relative change of an amplitude from the guess of a short series, beyond which it guesses nothing
@@ -40,7 +39,7 @@ def first_torus(
     energy_ratio: Mapping[int, float] | None = None,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> RefinedTorus:
+) -> Torus[Newton]:
     """The torus with these small amplitudes, from a short series about the lowest frequency shift.
 
     energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed
@@ -62,7 +61,7 @@ def first_at(
     *,
     tolerance: float = TOLERANCE,
     progress: Progress | None = None,
-) -> RefinedTorus:
+) -> Torus[Newton]:
     """The torus of an energy near the linear limit, from a short series with about its amplitudes.
 
     ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found
@@ -108,7 +107,7 @@ def first_energy(chain: Chain, amplitudes: Mapping[int, float], goal: Fraction) 
     return first
 
 
-def short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
+def short_series(chain: Chain, amplitudes: Mapping[int, float]) -> Torus[FromSeries]:
     """The series of lowest orders about the frequencies that these amplitudes shift."""
     if chain.periodic:
         return short_waves(chain, amplitudes, GUESS_ORDER)
@@ -117,8 +116,7 @@ def short_series(chain: Chain, amplitudes: Mapping[int, float]) -> QTorus:
         shifted = [chain.linear_frequency(q) + mpmath.mpf(shifts[q]) for q in amplitudes]
         omega = [Fraction(text(w, 25)) for w in shifted]
     series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
-    phases = dict.fromkeys(amplitudes, 0.0)
-    return QTorus(series, dict(amplitudes), phases, 0, GUESS_ORDER)
+    return FromSeries(series, tuple(amplitudes.values()), 0, GUESS_ORDER).torus()
 
 
 def returned(members: Sequence[Member], *, tolerance: float) -> bool:

@@ -28,7 +28,8 @@ from symfpu.families.members import Event, Level, linear_by_mode
 from symfpu.files.progress import Progress
 from symfpu.refinement.conditions import Condition, Plane
 from symfpu.refinement.guesses import shifts_of
-from symfpu.refinement.refined_torus import NoTorus, RefinedTorus, refined_torus
+from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus
+from symfpu.tori.torus import Torus
 
 SAME = 1e-6  # of the size: members that are nearer are one
 TURN_HALVINGS = 20  # of a segment, for the place where the energy turns
@@ -45,7 +46,7 @@ class BreatherWalk:
         (seed,) = plan.seeds
         self.walk = FromRest(plan.chain, seed)
 
-    def first(self) -> RefinedTorus:
+    def first(self) -> Torus[Newton]:
         """The member of the first energy; NoPeriodicOrbit where the family has none."""
         goal = EnergyGoal(self.plan.chain, self.plan.first, self.plan.harmonic)
         return self._refined(first_passage(self.walk, goal), self._at(self.plan.first))
@@ -73,7 +74,7 @@ class BreatherWalk:
             low, high = (middle, high) if rises else (low, middle)
         return goal.value(low.balance, low.z)
 
-    def after(self, torus: RefinedTorus) -> Iterator[tuple[RefinedTorus, list[Event]]]:
+    def after(self, torus: Torus[Newton]) -> Iterator[tuple[Torus[Newton], list[Event]]]:
         """Members after one, up to the goal, and the resonances met on the way to each.
 
         Ends with NoTorus where the family cannot be followed.
@@ -100,7 +101,7 @@ class BreatherWalk:
     def _at(self, energy: float) -> Condition:
         return Level(energy, self.plan.harmonic).condition
 
-    def _segments(self, torus: RefinedTorus) -> Iterator[tuple[int | None, Point, Point]]:
+    def _segments(self, torus: Torus[Newton]) -> Iterator[tuple[int | None, Point, Point]]:
         """Pairs of neighbours from a member on, with the number of the first in the walk."""
         found = False
         for k, start, end in self._pairs(torus):
@@ -113,7 +114,7 @@ class BreatherWalk:
                 if gone > SAME * end.size:
                     yield k, own, end
 
-    def _pairs(self, torus: RefinedTorus) -> Iterator[tuple[int | None, Point, Point]]:
+    def _pairs(self, torus: Torus[Newton]) -> Iterator[tuple[int | None, Point, Point]]:
         """Neighbours from below a member on."""
         (A,) = map(abs, torus.amplitudes.values())
         first = self.walk.points[0].amplitude
@@ -126,7 +127,7 @@ class BreatherWalk:
         for k, end in enumerate(points):
             yield k, self.walk.points[k], end
 
-    def _between(self, start: Point, torus: RefinedTorus, end: Point) -> Point | None:
+    def _between(self, start: Point, torus: Torus[Newton], end: Point) -> Point | None:
         """A torus as a point, if it lies between two neighbours."""
         (A,) = torus.amplitudes.values()
         sizes = sorted((start.amplitude, end.amplitude))
@@ -135,7 +136,7 @@ class BreatherWalk:
             return None
         start, end = alike(start, end)
         orbit = as_periodic_orbit(torus, "torus", "")
-        z = start.balance.vector(orbit.cosines, orbit.sigma)
+        z = start.balance.vector(orbit.cosines, orbit.origin.sigma)
         try:
             own = point_at(start.balance, z, start.tangent)
         except NotOnTheCurve:
@@ -151,7 +152,7 @@ class BreatherWalk:
             return own
         return None if disagreement(start, own) or disagreement(own, end) else own
 
-    def _refined(self, point: Point, condition: Condition | None) -> RefinedTorus:
+    def _refined(self, point: Point, condition: Condition | None) -> Torus[Newton]:
         """The same orbit by Newton's method on tori; NoTorus if it is another one."""
         guess = orbit_at(point, 0)
         conditions = [condition or self._plane(point)]
@@ -202,7 +203,7 @@ class BreatherWalk:
 
 
 def stability_between(
-    start: RefinedTorus, end: RefinedTorus, stable_before: bool
+    start: Torus[Newton], end: Torus[Newton], stable_before: bool
 ) -> float | None:
     """The energy between two neighbours where the stability changes, by halving on the curve.
 
@@ -222,11 +223,11 @@ def stability_between(
     return energy
 
 
-def _neighbours(start: RefinedTorus, end: RefinedTorus) -> tuple[Point, Point]:
+def _neighbours(start: Torus[Newton], end: Torus[Newton]) -> tuple[Point, Point]:
     """Two members as points of their curve, in its direction."""
     orbits = [as_periodic_orbit(torus, "torus", "") for torus in (start, end)]
     harmonics = max(8, *(len(orbit.cosines) + 3 for orbit in orbits))
     balance = Balance(start.chain, start.seed, harmonics)
-    z = [balance.vector(orbit.cosines, orbit.sigma) for orbit in orbits]
+    z = [balance.vector(orbit.cosines, orbit.origin.sigma) for orbit in orbits]
     low, high = (point_at(balance, x, z[1] - z[0]) for x in z)
     return low, high

@@ -20,8 +20,8 @@ from symfpu.files.progress import Progress
 from symfpu.refinement.conditions import Condition, Plane, ratio_conditions
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats
-from symfpu.refinement.refined_torus import NoTorus, RefinedTorus, refined_torus
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus
+from symfpu.tori.torus import Torus
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way
 # the smallest from a doubtful member: near a saddle such ones crawl on without end
@@ -50,7 +50,7 @@ class Way:
         energies: bool,
         tolerance: float,
         progress: Progress | None,
-        tori: Sequence[RefinedTorus],
+        tori: Sequence[Torus[Newton]],
         step: float,
         largest: float = 0.0,
     ) -> None:
@@ -60,7 +60,7 @@ class Way:
         self.largest = largest  # relative shift so far
         self._known: dict[int, Whole] = {}  # by id of the torus
 
-    def local(self, *tori: RefinedTorus) -> Way:
+    def local(self, *tori: Torus[Newton]) -> Way:
         """The same family from other tori, to look between members."""
         other = Way(
             self.ratio,
@@ -92,13 +92,13 @@ class Way:
         ratio = ratio_conditions(tuple(self.ratio), self.ratio, energies=self.energies)
         return [first, *ratio]
 
-    def variables(self, torus: RefinedTorus, scales: Floats) -> Floats:
+    def variables(self, torus: Torus[Newton], scales: Floats) -> Floats:
         """Where a torus is, (ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
         A = np.array([np.longdouble(abs(a)) for a in torus.amplitudes.values()])
         shifts = shifts_of(torus) / scales
         return np.concatenate([np.log(A), shifts])
 
-    def at(self, distance: float) -> RefinedTorus:
+    def at(self, distance: float) -> Torus[Newton]:
         """The torus at this length of way from the last one, along the secant; raises NoTorus.
 
         A negative length leads back to the one before.
@@ -134,7 +134,7 @@ class Way:
         tangent = (difference / length).astype(float).tolist()
         return Plane(tuple(x), tuple(tangent), tuple(scales.tolist()), distance), length
 
-    def _whole(self, torus: RefinedTorus) -> Whole:
+    def _whole(self, torus: Torus[Newton]) -> Whole:
         """A torus with its tangent, which is computed once."""
         if id(torus) not in self._known:
             plane, _ = self._plane(0.0)
@@ -145,12 +145,12 @@ class Way:
         """NoTorus unless the last two tori lie on one smooth piece of a curve."""
         require_one_curve(*map(self._whole, self.tori[-2:]))
 
-    def _require_between(self, found: RefinedTorus) -> None:
+    def _require_between(self, found: Torus[Newton]) -> None:
         """NoTorus for a torus that does not fit the curve between the last two."""
         before, last = self.tori[-2:]
         require_one_curve(*map(self._whole, (before, found, last)))
 
-    def between(self, level: Level) -> RefinedTorus:
+    def between(self, level: Level) -> Torus[Newton]:
         """The torus of an energy between those of the last two; raises NoTorus."""
         before, last = self.tori[-2:]
         low, high = level.of(before), level.of(last)
@@ -168,7 +168,7 @@ class Way:
         self._require_between(found)
         return found
 
-    def meeting(self, condition: Condition, guess: QuasiPeriodic) -> RefinedTorus:
+    def meeting(self, condition: Condition, guess: Torus) -> Torus[Newton]:
         """The torus of a condition between the last two, from a guess.
 
         Raises NoTorus, also for one that is elsewhere or doubtful.
@@ -183,7 +183,7 @@ class Way:
         self._require_between(found)
         return found
 
-    def place(self, torus: RefinedTorus) -> tuple[float, float]:
+    def place(self, torus: Torus[Newton]) -> tuple[float, float]:
         """How far along the way between the last two tori another one is, and how far off it.
 
         Both in the distance of the two.
@@ -196,7 +196,7 @@ class Way:
         off = float(np.linalg.norm(gone - along * secant))
         return along, off / float(np.linalg.norm(secant))
 
-    def advance(self, goal: Level) -> RefinedTorus:
+    def advance(self, goal: Level) -> Torus[Newton]:
         """The next torus, by the longest step that succeeds; raises NoTorus when none does.
 
         The goal chooses no step. It ends the one that leads beyond.
@@ -204,14 +204,14 @@ class Way:
         found = self._longest_step()
         if goal.passed(reached := goal.of(found)) and not goal.met(reached):
             found = self._reached(goal, found)
-        if len(found.steps) <= EASY_STEPS:
+        if len(found.origin.steps) <= EASY_STEPS:
             self.step = min(self.step * FACTOR, LARGEST_STEP)
         self.tori = [*self.tori[-2:], found]
         kept = set(map(id, self.tori))
         self._known = {key: known for key, known in self._known.items() if key in kept}
         return found
 
-    def _longest_step(self) -> RefinedTorus:
+    def _longest_step(self) -> Torus[Newton]:
         while True:
             try:
                 return self.at(self.step)
@@ -221,7 +221,7 @@ class Way:
                     raise
                 self.step /= 2
 
-    def _reached(self, goal: Level, beyond: RefinedTorus) -> RefinedTorus:
+    def _reached(self, goal: Level, beyond: Torus[Newton]) -> Torus[Newton]:
         """The torus of the goal between the last one and one beyond, by halves of the way."""
         low, high = self.tori[-1], beyond
         for halving in range(GOAL_HALVINGS + 1):
@@ -238,7 +238,7 @@ class Way:
         raise AssertionError
 
 
-def _require_resolved(found: RefinedTorus) -> None:
+def _require_resolved(found: Torus[Newton]) -> None:
     """Raises NoTorus for what is no member of a family."""
     if min(found.frequencies) <= 0:  # the mirror image of the family behind a saddle
         raise NoTorus("a frequency passes zero", found, found.residual())

@@ -24,7 +24,8 @@ from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.refinement.conditions import Crossing
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.refinement.refined_torus import NoTorus, RefinedTorus
+from symfpu.refinement.refined_torus import Newton, NoTorus
+from symfpu.tori.torus import Torus
 
 # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed
 LEAST_COEFFICIENT = 1e-11
@@ -34,7 +35,7 @@ LOCATIONS = 8  # the most members spent on it
 MOST_CROSSINGS = 8
 
 
-def quantities(torus: RefinedTorus) -> dict[str, float]:
+def quantities(torus: Torus[Newton]) -> dict[str, float]:
     """What may turn along a family: energy, shifts of the frequencies, amplitudes."""
     by_seed = zip(torus.seeds, shifts_of(torus), strict=True)
     shifts = {f"omega_{q}": float(shift) for q, shift in by_seed}
@@ -55,7 +56,7 @@ class _Sign(NamedTuple):
     coefficient: float
 
 
-def _signs(first: RefinedTorus, second: RefinedTorus) -> list[_Sign]:
+def _signs(first: Torus[Newton], second: Torus[Newton]) -> list[_Sign]:
     """The divisors of significant coefficients that change their sign between two tori.
 
     They are in the order in which they do so.
@@ -81,7 +82,7 @@ def _signs(first: RefinedTorus, second: RefinedTorus) -> list[_Sign]:
     return sorted(found, key=lambda sign: sign.part)
 
 
-def _common(first: RefinedTorus, second: RefinedTorus) -> tuple[Ints, Floats, Floats]:
+def _common(first: Torus[Newton], second: Torus[Newton]) -> tuple[Ints, Floats, Floats]:
     """The harmonics that two tori share, (H, s), and coefficients of the one and the other."""
     known, earlier = first.harmonics, first.cosines
     others, later = second.harmonics, second.cosines
@@ -92,7 +93,7 @@ def _common(first: RefinedTorus, second: RefinedTorus) -> tuple[Ints, Floats, Fl
     return known[i], earlier[i], later[j]
 
 
-def _places(torus: RefinedTorus, harmonics: Ints) -> Ints:
+def _places(torus: Torus[Newton], harmonics: Ints) -> Ints:
     """Of the modes of coefficients among those of the chain, broadcast with (H, C).
 
     Of travelling waves the one mode of each harmonic.
@@ -106,14 +107,14 @@ def _places(torus: RefinedTorus, harmonics: Ints) -> Ints:
     return np.asarray(place[waves][:, None])
 
 
-def _divisors(torus: RefinedTorus, harmonics: Ints, places: Ints) -> Floats:
+def _divisors(torus: Torus[Newton], harmonics: Ints, places: Ints) -> Floats:
     """|nu.omega| - Omega of the modes; shape (H, C)."""
     omega = np.array([float(w) for w in torus.frequencies])
     rates = np.abs(harmonics @ omega)
     return np.asarray(rates[:, None] - torus.chain.frequencies()[places])
 
 
-def _own_harmonics(torus: RefinedTorus, harmonics: Ints, modes: Ints) -> NDArray[np.bool_]:
+def _own_harmonics(torus: Torus[Newton], harmonics: Ints, modes: Ints) -> NDArray[np.bool_]:
     """Where a seed has its own harmonic; shape (H, C)."""
     single = np.abs(harmonics).sum(axis=1) == 1
     of_seeds = zip(torus.seeds, harmonics.T, strict=True)
@@ -152,14 +153,14 @@ def resonances(way: Way, after: int) -> Iterator[Event]:
         )
 
 
-def _coefficient(torus: RefinedTorus, sign: _Sign) -> float:
+def _coefficient(torus: Torus[Newton], sign: _Sign) -> float:
     """The one under a divisor."""
     harmonics, table = torus.harmonics, torus.cosines
     row = harmonics.tolist().index(list(sign.harmonic))
     return float(table[row, sign.column])
 
 
-def _resonant(way: Way, sign: _Sign) -> RefinedTorus | None:
+def _resonant(way: Way, sign: _Sign) -> Torus[Newton] | None:
     """The torus between the last two on which this divisor is zero.
 
     None where Newton's method does not lead to it.
@@ -207,7 +208,9 @@ def _fold(way: Way, name: str, after: int) -> Event:
     return Event("fold", name, after + (place > 0), float(torus.energy()), value)
 
 
-def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTorus, float]:
+def _turn(
+    way: Way, measure: Callable[[Torus[Newton]], float]
+) -> tuple[Torus[Newton], float]:
     """Where a measure turns, and how far along the way from the middle one of the last three tori.
 
     Newton tori between these, at the vertex of the parabola through the best three of all.
@@ -238,7 +241,7 @@ def _turn(way: Way, measure: Callable[[RefinedTorus], float]) -> tuple[RefinedTo
     return torus, place
 
 
-def crossing(way: Way, goal: Level) -> tuple[int, RefinedTorus] | None:
+def crossing(way: Way, goal: Level) -> tuple[int, Torus[Newton]] | None:
     """The torus of the goal where the energy turns between the last three tori.
 
     All of them are below the goal, which the energy passes.

@@ -27,8 +27,9 @@ from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, exact
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
-from symfpu.refinement.refined_torus import RefinedTorus, refined_torus
+from symfpu.refinement.refined_torus import Newton, refined_torus
 from symfpu.refinement.tori import refine
+from symfpu.tori.torus import Torus
 
 # in the order in which they are told, as one and as several
 KINDS_OF_EVENTS = {
@@ -140,7 +141,7 @@ class Family(Shown, Gridded):
 
 
 @public
-def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> RefinedTorus:
+def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Torus[Newton]:
     """The torus of a family that has this energy, by Newton's method from the nearest member.
 
     found : the family. energy : an exact number, dimensionless; H, or with `harmonic` sum E_q,
@@ -174,7 +175,7 @@ def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Refine
 @public
 def member_at_frequency(
     found: Family, seed: int, frequency: Number
-) -> tuple[RefinedTorus, ...]:
+) -> tuple[Torus[Newton], ...]:
     """The tori of a family on which this seed has this frequency.
 
     One for every pair of neighbouring members with the frequency between them.
@@ -216,7 +217,7 @@ def _require_family(found: object) -> None:
 
 def _between(
     found: Family, k: int, place: int, omega: Fraction, part: float
-) -> RefinedTorus:
+) -> Torus[Newton]:
     """The torus with this frequency, between member k and the next, near the given part."""
     seed = found.seeds[place]
     with mpmath.workdps(2 * DIGITS):

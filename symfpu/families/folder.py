@@ -43,8 +43,9 @@ from symfpu.files.sealed import document_in, read_bytes, write_sealed
 from symfpu.files.writing import made_folder
 from symfpu.normal.frequencies import NormalFrequencies
 from symfpu.numbers.typed import Number, double, exact, integer
-from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.tori.torus import QTorus
+from symfpu.refinement.refined_torus import Newton
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus, comes_from
 
 Json = dict[str, Any]
 BEGINNING = "1/1000"  # of the energy asked for, where breathers begin by default
@@ -305,11 +306,11 @@ class Kept:
             )
         for k in range(count):
             torus = self._torus(k)
-            if isinstance(torus, RefinedTorus):
+            if comes_from(torus, Newton):
                 normal = self._normal(folder, torus, entries[k])
                 multipliers = self.plan.multipliers
                 self.members.append(member(torus, multipliers=multipliers, normal=normal))
-            else:
+            elif comes_from(torus, FromSeries):
                 self.members.append(series_member(torus))
         if (
             self.normal is not None
@@ -318,7 +319,7 @@ class Kept:
             self.normal.known = [read_modes(folder, int(known_at))]
 
     def _normal(
-        self, folder: Path, torus: RefinedTorus, entry: Json | None
+        self, folder: Path, torus: Torus[Newton], entry: Json | None
     ) -> NormalFrequencies | None:
         """Of a member in the folder; InputError where the record of it is damaged."""
         try:
@@ -327,7 +328,7 @@ class Kept:
             advice = f"{RECORD} is damaged, or of an older symfpu; choose another folder"
             raise InputError("folder", str(folder), "a family", advice) from error
 
-    def _torus(self, index: int) -> RefinedTorus | QTorus:
+    def _torus(self, index: int) -> Torus:
         """A member that the record counts.
 
         InputError where its file is not there, BundleError where it is damaged.
@@ -342,7 +343,8 @@ class Kept:
             raise InputError("folder", str(self.folder), allowed, advice) from error
         ours = self.plan.chain, self.plan.seeds
         if (
-            not isinstance(torus, RefinedTorus | QTorus)
+            torus is None
+            or not isinstance(torus.origin, Newton | FromSeries)
             or (torus.chain, torus.seeds) != ours
         ):
             advice = f"{self._file(index).name} is another torus; choose another folder"
@@ -361,14 +363,15 @@ class Kept:
         del self.members[number:]
         self.events = [event for event in self.events if event.after < number - 1]
 
-    def measured(self, torus: RefinedTorus) -> Member:
+    def measured(self, torus: Torus[Newton]) -> Member:
         """A torus as the next member, with all that is asked for."""
         normal = self.normal.of(torus) if self.normal else None
         return member(torus, multipliers=self.plan.multipliers, normal=normal)
 
     def add(self, found: Member, events: list[Event | NormalEvent]) -> None:
         """The member first, then the record that counts it: a run may be stopped at any time."""
-        if self.folder is not None and isinstance(found.torus, RefinedTorus | QTorus):
+        kept = isinstance(found.torus.origin, Newton | FromSeries)
+        if self.folder is not None and kept:
             save(
                 self._file(len(self.members)),
                 found.torus,

@@ -32,8 +32,9 @@ from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, integer
 from symfpu.refinement.conditions import ratio_conditions
-from symfpu.refinement.refined_torus import TOLERANCE, NoTorus, RefinedTorus
-from symfpu.tori.torus import QTorus
+from symfpu.refinement.refined_torus import TOLERANCE, Newton, NoTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus, comes_from
 
 SECOND_RATIO = 1.1  # ratio of the amplitudes of the second member and the first
 MEMBERS = 200
@@ -238,11 +239,11 @@ def _walk(plan: Plan, progress: Progress) -> BreatherWalk:
         return BreatherWalk(plan, progress)
     except NoPeriodicOrbit as failure:
         guess = short_series(plan.chain, plan.start)
-        assert isinstance(guess, QTorus)
+        assert comes_from(guess, FromSeries)
         raise NoTorus(str(failure), guess, guess.residual()) from failure
 
 
-def _first_of(walk: BreatherWalk, plan: Plan) -> RefinedTorus:
+def _first_of(walk: BreatherWalk, plan: Plan) -> Torus[Newton]:
     """The torus of the first energy; NotInFamily where the family has none."""
     try:
         return walk.first()
@@ -260,12 +261,10 @@ def _after_turn(ending: str) -> str:
 
 
 def _way(
-    plan: Plan, kept: Kept, progress: Progress, tori: Sequence[RefinedTorus] = ()
+    plan: Plan, kept: Kept, progress: Progress, tori: Sequence[Torus[Newton]] = ()
 ) -> Way:
     """The way of a family from its last members, or from other tori."""
-    known = tori or [
-        m.torus for m in kept.members[-3:] if isinstance(m.torus, RefinedTorus)
-    ]
+    known = tori or [m.torus for m in kept.members[-3:] if comes_from(m.torus, Newton)]
     return Way(
         plan.ratio,
         energies=plan.energies,
@@ -320,7 +319,9 @@ def _ended(kept: Kept, end: NoTorus, step: float) -> str:
     """Where and why no further member was found."""
     last = kept.members[-1]
     doubtful = " from a doubtful member" if last.warnings else ""
-    nearest = last.torus.near_resonances[:1] if isinstance(last.torus, RefinedTorus) else ()
+    nearest = (
+        last.torus.origin.near_resonances[:1] if comes_from(last.torus, Newton) else ()
+    )
     divisor = "".join(f"; the smallest divisor there is {near!r}" for near in nearest)
     steps = f"with steps along the way down to {step:.1g}{doubtful}{divisor}"
     return f"{_turned(kept)}ended at H = {last.energy:.7g}: {end.reason}, {steps}"
@@ -347,8 +348,8 @@ def _up_to_goal(plan: Plan, kept: Kept, at_goal: Callable[[int], Member]) -> Fam
     return _family(plan, members, events, ENDED_AT_GOAL)
 
 
-def _refined(members: Sequence[Member]) -> list[RefinedTorus]:
-    return [m.torus for m in members if isinstance(m.torus, RefinedTorus)]
+def _refined(members: Sequence[Member]) -> list[Torus[Newton]]:
+    return [m.torus for m in members if comes_from(m.torus, Newton)]
 
 
 def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
@@ -375,7 +376,7 @@ def _begun(plan: Plan, kept: Kept, progress: Progress, *, lower: bool) -> str:
     return why
 
 
-def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedTorus]:
+def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[Torus[Newton]]:
     """The torus of the first energy, or the one member there is, and one a little above.
 
     Both are below the goal, or at it.
@@ -384,7 +385,7 @@ def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedToru
     begin = Level(plan.first, plan.harmonic)
     known = _refined(kept.members)
 
-    def near_rest(level: Level, amplitudes: Mapping[int, float]) -> RefinedTorus:
+    def near_rest(level: Level, amplitudes: Mapping[int, float]) -> Torus[Newton]:
         tolerance = plan.tolerance
         return first_at(
             level, plan.chain, amplitudes, ratio, tolerance=tolerance, progress=progress
@@ -400,7 +401,7 @@ def _from_series(plan: Plan, kept: Kept, progress: Progress) -> list[RefinedToru
     return tori
 
 
-def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[RefinedTorus], str]:
+def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[Torus[Newton]], str]:
     """The torus of the first energy, and the next one, by a family from a small part of it.
 
     With why there is no next one. Raises NotInFamily where that family does not reach the energy.
@@ -430,7 +431,7 @@ def _led_up(plan: Plan, kept: Kept, progress: Progress) -> tuple[list[RefinedTor
 def _by_appendix_a(plan: Plan, order: int, kept: Kept, tell: Progress) -> Family:
     """The same by the algorithm of Appendix A, gone on with from the members there are."""
     increment = (plan.goal - plan.first) / plan.chain.N / APPENDIX_MEMBERS
-    tori = [m.torus for m in kept.members if isinstance(m.torus, QTorus)]
+    tori = [m.torus for m in kept.members if comes_from(m.torus, FromSeries)]
     known = [AppendixAMember(torus, increment) for torus in tori]
 
     def at_goal(k: int) -> Member:

@@ -19,9 +19,9 @@ from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.normal.frequencies import NormalFrequencies
 from symfpu.refinement.conditions import Condition, Energy
-from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.torus import QTorus
+from symfpu.refinement.refined_torus import Newton
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 ENERGY_TOLERANCE = (
     1e-12  # relative: what an energy asked for and that of a member may differ by
@@ -37,7 +37,7 @@ def linear_by_mode(chain: Chain, modes: Iterable[int]) -> dict[int, float]:
     return {q: known[numbers.index(q)] for q in modes}
 
 
-def harmonic_energy_of(torus: QuasiPeriodic) -> float:
+def harmonic_energy_of(torus: Torus) -> float:
     """Sum E_q at the angles zero; of waves of a ring, nowhere at rest, averaged over the angles."""
     if torus.chain.periodic:
         return float(torus.average_spectrum().sum())
@@ -56,7 +56,7 @@ class Level:
         """The symbol of this energy."""
         return "sum E_q" if self.harmonic else "H"
 
-    def of(self, torus: QuasiPeriodic) -> float:
+    def of(self, torus: Torus) -> float:
         """This energy of a torus."""
         return harmonic_energy_of(torus) if self.harmonic else float(torus.energy())
 
@@ -98,7 +98,7 @@ class Member(Tabled):
     0       0  0.0005   torus
     """
 
-    torus: QuasiPeriodic
+    torus: Torus
     amplitudes: Mapping[int, float]
     energy: float
     harmonic_energy: float
@@ -229,7 +229,7 @@ class Event(Recorded):
 
 
 def member(
-    torus: RefinedTorus, *, multipliers: bool, normal: NormalFrequencies | None = None
+    torus: Torus[Newton], *, multipliers: bool, normal: NormalFrequencies | None = None
 ) -> Member:
     """A torus with its energies, its residual and, for a breather, its multipliers.
 
@@ -247,7 +247,7 @@ def member(
     )
 
 
-def series_member(torus: QTorus) -> Member:
+def series_member(torus: Torus[FromSeries]) -> Member:
     """A torus of a series with its energies and its residual."""
     amplitudes = {q: float(a) for q, a in torus.amplitudes.items()}
     energy = float(torus.energy())

@@ -46,7 +46,7 @@ from symfpu.normal.resonances import (
 from symfpu.normal.search import followed_modes
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.refined_torus import NoTorus
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.torus import Torus
 
 STABILITY, RESONANCE = "stability", "resonance"
 RESONANCE_LENGTH = 4  # sum |nu_i| up to which a resonance that is crossed is an event
@@ -110,11 +110,11 @@ class Known(NamedTuple):
 class Curve(Protocol):
     """Tori by their place on a curve; NoTorus where there is none."""
 
-    def torus(self, place: float) -> QuasiPeriodic:
+    def torus(self, place: float) -> Torus:
         """The one at a place."""
         ...
 
-    def met(self, condition: Condition, place: float) -> tuple[float, QuasiPeriodic]:
+    def met(self, condition: Condition, place: float) -> tuple[float, Torus]:
         """The one that meets a condition, by Newton's method from a place; with its own."""
         ...
 
@@ -148,7 +148,7 @@ class Stretch:
         near = min(ends, key=lambda end: abs(end.place - place))
         torus = self._curve.torus(place)
 
-        def between(part: float) -> QuasiPeriodic:
+        def between(part: float) -> Torus:
             return self._curve.torus(near.place + part * (place - near.place))
 
         found, missing = followed_modes(torus, near.modes, modes=modes, between=between)
@@ -183,7 +183,7 @@ class Stretch:
 
     def _met(
         self, condition: NormalCondition, start: float, bracket: Bracket, size: float
-    ) -> tuple[float, float, QuasiPeriodic] | None:
+    ) -> tuple[float, float, Torus] | None:
         """Place, error and torus of a condition by Newton's method, or None.
 
         size : that the condition's value is relative to.
@@ -286,7 +286,7 @@ class Stretch:
         resonance: ParametricResonance,
         place: float,
         error: float,
-        torus: QuasiPeriodic | None = None,
+        torus: Torus | None = None,
         *,
         distance: float = 0.0,
         begins: bool = False,
@@ -311,8 +311,8 @@ class Stretch:
         return between, (1 - part) * low + part * high
 
 
-def _measured(torus: QuasiPeriodic) -> tuple[dict[int, float], float]:
-    amplitudes = {q: float(a) for q, a in amplitudes_of(torus).items()}
+def _measured(torus: Torus) -> tuple[dict[int, float], float]:
+    amplitudes = {q: float(a) for q, a in torus.amplitudes.items()}
     return amplitudes, float(torus.energy())
 
 

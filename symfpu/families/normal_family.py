@@ -10,12 +10,7 @@ from typing import Any
 import numpy as np
 
 from symfpu.errors import InputError, RunInterrupted
-from symfpu.families.normal_events import (
-    RESONANCE_LENGTH,
-    Known,
-    NormalEvent,
-    Stretch,
-)
+from symfpu.families.normal_events import RESONANCE_LENGTH, Known, NormalEvent, Stretch
 from symfpu.families.normal_folder import KeptLine
 from symfpu.families.normal_line import Line
 from symfpu.files.progress import Progress, unheard
@@ -29,7 +24,7 @@ from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, integer
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.torus import Torus
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +67,7 @@ class NormalFamily(Shown, Gridded):
 
     @staticmethod
     def _amplitudes(found: NormalModes) -> dict[int, float]:
-        return {q: float(a) for q, a in amplitudes_of(found.torus).items()}
+        return {q: float(a) for q, a in found.torus.amplitudes.items()}
 
     def _grid(self) -> Grid:
         torus = self.members[0].torus
@@ -101,7 +96,7 @@ class NormalFamily(Shown, Gridded):
 
 @public
 def normal_family(
-    solution: QuasiPeriodic,
+    solution: Torus,
     amplitudes: Mapping[int, Number],
     *,
     members: int = 9,
@@ -161,7 +156,7 @@ def normal_family(
     return NormalFamily(tuple(kept.members), line.parts, tuple(kept.events))
 
 
-def _end(solution: QuasiPeriodic, amplitudes: Mapping[int, Number]) -> dict[int, float]:
+def _end(solution: Torus, amplitudes: Mapping[int, Number]) -> dict[int, float]:
     given: object = amplitudes
     if not isinstance(given, Mapping) or set(given) != set(solution.seeds):
         allowed = f"an amplitude for each of the seeds {solution.seeds}"

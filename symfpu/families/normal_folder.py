@@ -17,7 +17,7 @@ from symfpu.files.writing import made_folder
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_again
 from symfpu.normal.modes import NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.resonances import ParametricResonance
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Json = dict[str, Any]
 RECORD = "line.json"
@@ -69,7 +69,7 @@ def normal_entry(found: NormalFrequencies | None) -> Json | None:
     }
 
 
-def normal_from(entry: Json | None, torus: QuasiPeriodic) -> NormalFrequencies | None:
+def normal_from(entry: Json | None, torus: Torus) -> NormalFrequencies | None:
     """The same again; KeyError, TypeError or ValueError for what is none."""
     if entry is None:
         return None

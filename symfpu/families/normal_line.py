@@ -16,7 +16,7 @@ from symfpu.normal.search import Between, followed_modes
 from symfpu.refinement.conditions import AmplitudeLine, Condition
 from symfpu.refinement.refined_torus import NoTorus, refined_torus
 from symfpu.refinement.tori import refine
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.torus import Torus
 from symfpu.tori.unfolding import folded, unfold
 
 HALVINGS = 6  # of a step to a torus that Newton's method does not reach at once
@@ -25,17 +25,15 @@ HALVINGS = 6  # of a step to a torus that Newton's method does not reach at once
 class Line:
     """Tori between two sets of amplitudes, by the part of the way."""
 
-    def __init__(
-        self, first: QuasiPeriodic, end: Mapping[int, float], members: int
-    ) -> None:
-        self.start = {q: float(a) for q, a in amplitudes_of(first).items()}
+    def __init__(self, first: Torus, end: Mapping[int, float], members: int) -> None:
+        self.start = {q: float(a) for q, a in first.amplitudes.items()}
         self.end = dict(end)
         self.parts = tuple(n / (members - 1) for n in range(members))
         self._chain = first.chain
         self._stands = first.stands
         self._given = first
-        self._known: dict[float, QuasiPeriodic] = {0.0: self._found_as(first)}
-        self._last: dict[float, QuasiPeriodic] = {}
+        self._known: dict[float, Torus] = {0.0: self._found_as(first)}
+        self._last: dict[float, Torus] = {}
 
     def described(self, modes: tuple[int, ...], length: int) -> dict[str, Any]:
         """What two runs of one line have in common."""
@@ -56,13 +54,13 @@ class Line:
         pairs = zip(self.parts, members, strict=False)
         self._known |= {part: self._found_as(known.torus) for part, known in pairs}
 
-    def _found_as(self, torus: QuasiPeriodic) -> QuasiPeriodic:
+    def _found_as(self, torus: Torus) -> Torus:
         """Standing waves as the torus of fixed ends that they unfold."""
         if not self._stands:
             return torus
         return folded(torus)
 
-    def _given_as(self, torus: QuasiPeriodic) -> QuasiPeriodic:
+    def _given_as(self, torus: Torus) -> Torus:
         """The reverse of it."""
         if not self._stands:
             return torus
@@ -72,11 +70,11 @@ class Line:
         """A_q by seed."""
         return {q: (1 - part) * a + part * self.end[q] for q, a in self.start.items()}
 
-    def torus(self, part: float) -> QuasiPeriodic:
+    def torus(self, part: float) -> Torus:
         """From the nearest one that is known, or by halves of the way to it; raises NoTorus."""
         return self._given if part == 0 else self._given_as(self._torus(part))
 
-    def met(self, condition: Condition, part: float) -> tuple[float, QuasiPeriodic]:
+    def met(self, condition: Condition, part: float) -> tuple[float, Torus]:
         """The one that meets a condition, by Newton's method from a part; with its own."""
         guess: Any = self._torus(part)
         found = refined_torus(guess, [condition, *self._on_the_line()])
@@ -96,18 +94,18 @@ class Line:
         others = [i for i in range(len(steps)) if i != first]
         return [AmplitudeLine((first, i), start, relative) for i in others]
 
-    def _torus(self, part: float) -> QuasiPeriodic:
+    def _torus(self, part: float) -> Torus:
         if part in self._known:
             return self._known[part]
         if part not in self._last:
             self._last[part] = self._reached(part, HALVINGS)
         return self._last[part]
 
-    def _reached(self, part: float, halvings: int) -> QuasiPeriodic:
+    def _reached(self, part: float, halvings: int) -> Torus:
         nearest = min(self._known, key=lambda p: abs(p - part))
         guess: Any = self._guess(part)
         try:
-            found: QuasiPeriodic = refine(guess, amplitudes=self.amplitudes(part))
+            found: Torus = refine(guess, amplitudes=self.amplitudes(part))
             return found
         except NoTorus:
             if not halvings:
@@ -116,7 +114,7 @@ class Line:
         self._known[middle] = self._reached(middle, halvings - 1)
         return self._reached(part, halvings - 1)
 
-    def _guess(self, part: float) -> QuasiPeriodic:
+    def _guess(self, part: float) -> Torus:
         """On the line through the two nearest, or the nearest."""
         near = sorted(self._known, key=lambda p: abs(p - part))[:2]
         if len(near) == 1:

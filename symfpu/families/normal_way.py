@@ -14,8 +14,8 @@ from symfpu.normal.search import followed_modes
 from symfpu.normal.torus import REFINED
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.lattice import Floats
-from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.refinement.refined_torus import Newton
+from symfpu.tori.torus import Torus
 
 
 class NormalWay:
@@ -28,7 +28,7 @@ class NormalWay:
         self.length, self.progress = length, progress
         self.known: list[NormalModes] = []
 
-    def of(self, torus: QuasiPeriodic, way: Way | None = None) -> NormalFrequencies | None:
+    def of(self, torus: Torus, way: Way | None = None) -> NormalFrequencies | None:
         """Those of the next member; None where it does not solve the equations well enough.
 
         way : its last two tori are the member before and this one.
@@ -68,17 +68,17 @@ class _Between:
         self._secant = self._variables(last) - self._variables(before)
         self._length = float(np.linalg.norm(self._secant))
 
-    def torus(self, part: float) -> RefinedTorus:
+    def torus(self, part: float) -> Torus[Newton]:
         """The one at a part."""
         if part in (0.0, 1.0):
             return self._ends[int(part)]
         return self._local.at(-part * self._length)
 
-    def met(self, condition: Condition, part: float) -> tuple[float, RefinedTorus]:
+    def met(self, condition: Condition, part: float) -> tuple[float, Torus[Newton]]:
         """The one that meets a condition, by Newton's method from a part; with its own."""
         found = self._way.meeting(condition, self.torus(part))
         gone = self._variables(found) - self._variables(self._ends[0])
         return float(gone @ self._secant) / self._length**2, found
 
-    def _variables(self, torus: RefinedTorus) -> Floats:
+    def _variables(self, torus: Torus[Newton]) -> Floats:
         return self._local.variables(torus, self._scales).astype(float)

@@ -19,7 +19,8 @@ from symfpu.refinement.conditions import Condition
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.newton import responses
-from symfpu.refinement.refined_torus import NoTorus, RefinedTorus
+from symfpu.refinement.refined_torus import Newton, NoTorus
+from symfpu.tori.torus import Torus
 
 SAME = 1e-6  # of the size: tori that are nearer are one
 
@@ -32,13 +33,13 @@ class Whole:
     either direction.
     """
 
-    torus: RefinedTorus
+    torus: Torus[Newton]
     harmonics: Ints
     cosines: Floats
     tangent: Floats
 
 
-def whole(torus: RefinedTorus, conditions: Sequence[Condition]) -> Whole:
+def whole(torus: Torus[Newton], conditions: Sequence[Condition]) -> Whole:
     """A torus with the tangent along which the first condition changes, and the others hold.
 
     Raises NoTorus where the family has no single tangent.

@@ -27,8 +27,8 @@ class Recorded:
 
         >>> from symfpu import Chain, torus_at_energy
         >>> found = torus_at_energy(Chain(N=4, alpha=1), (1,), "0.001", order=2).record()
-        >>> found["kind"], found["N"], found["alpha"], float(found["energy"])
-        ('QTorus', 4, '1', 0.001)
+        >>> found["kind"], found["origin"], found["N"], found["alpha"], float(found["energy"])
+        ('Torus', 'FromSeries', 4, '1', 0.001)
         """
         found: dict[str, Any] = import_module(RECORDS).record(self)
         return found

@@ -25,12 +25,12 @@ from numpy.typing import NDArray
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.numbers.public import public
-from symfpu.refinement.digits import PreciseTorus
+from symfpu.refinement.digits import IterativeRefinement
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import canonical_signs, dilated, places_of, told_apart
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_fixed_solution
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus, comes_from, require_fixed_solution
 
 Floats = NDArray[Any]
 Ints = NDArray[np.int64]
@@ -61,7 +61,7 @@ class _Errors:
 
 
 @public
-def spectrum_floor(solution: QuasiPeriodic) -> NDArray[np.float64]:
+def spectrum_floor(solution: Torus) -> NDArray[np.float64]:
     """The energies at and below which the modes of a torus or breather are rounding; shape (N-1,).
 
     solution : a torus or periodic orbit of any kind.
@@ -87,7 +87,7 @@ def spectrum_floor(solution: QuasiPeriodic) -> NDArray[np.float64]:
 
 
 @public
-def coefficient_errors(solution: QuasiPeriodic) -> NDArray[np.float64]:
+def coefficient_errors(solution: Torus) -> NDArray[np.float64]:
     """How far off the Fourier coefficients of a torus or breather are; shape (H, N-1).
 
     solution : a torus or periodic orbit of any kind. Dimensionless; what they count on is said in
@@ -104,11 +104,11 @@ def coefficient_errors(solution: QuasiPeriodic) -> NDArray[np.float64]:
     return np.asarray(errors.sizes[places], dtype=np.float64)
 
 
-def _errors(solution: QuasiPeriodic) -> _Errors:
+def _errors(solution: Torus) -> _Errors:
     require_fixed_solution(solution, "solution")
-    if isinstance(solution, QTorus):
+    if comes_from(solution, FromSeries):
         return _of_series(solution)
-    if isinstance(solution, PreciseTorus):
+    if comes_from(solution, IterativeRefinement):
         return _of_digits(solution)
     return _of_newton(solution)
 
@@ -149,7 +149,7 @@ def _along_the_family(
 # Newton's method
 
 
-def _of_newton(torus: QuasiPeriodic) -> _Errors:
+def _of_newton(torus: Torus) -> _Errors:
     """One more step of Newton's method, on more harmonics.
 
     That of the amplitudes goes along the family.
@@ -185,7 +185,7 @@ def _of_newton(torus: QuasiPeriodic) -> _Errors:
     )
 
 
-def _harmonics(torus: QuasiPeriodic) -> Ints:
+def _harmonics(torus: Torus) -> Ints:
     """The harmonics of a torus, one of each pair.
 
     Of one angle also those up to WIDENING times as large.
@@ -213,7 +213,7 @@ def _left_out(
     return harmonics, rates, np.where(equation.projection.at(harmonics).mask, sizes, 0)
 
 
-def _on(torus: QuasiPeriodic, harmonics: Ints) -> Floats:
+def _on(torus: Torus, harmonics: Ints) -> Floats:
     """The coefficients of a torus, in long doubles, at given harmonics; shape (H, N-1)."""
     places = places_of(canonical_signs(np.asarray(torus.harmonics)), harmonics)
     cosines = np.zeros((len(harmonics), torus.chain.N - 1), dtype=np.longdouble)
@@ -224,14 +224,14 @@ def _on(torus: QuasiPeriodic, harmonics: Ints) -> Floats:
 # series
 
 
-def _of_series(torus: QTorus) -> _Errors:
+def _of_series(torus: Torus[FromSeries]) -> _Errors:
     """Rounding of the tables at these amplitudes, order by order, and of the amplitudes."""
-    series = torus.series
+    series = torus.origin.series
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     keys = series.grading.harmonic_keys(torus.harmonics)
     sizes = np.zeros(torus.cosines.shape)
     of_order = _rounded if series.digits is None else _within_radii
-    for order in range(1, torus.order + 1):
+    for order in range(1, torus.origin.order + 1):
         nu, errors = of_order(torus, amplitudes, order)
         sizes[np.searchsorted(keys, series.grading.harmonic_keys(nu))] += errors
     cosines, relative = torus.cosines.astype(float), _of_amplitudes(torus)
@@ -240,12 +240,14 @@ def _of_series(torus: QTorus) -> _Errors:
     return _Errors(torus.harmonics, rates, sizes)
 
 
-def _rounded(torus: QTorus, amplitudes: list[Any], order: int) -> tuple[Ints, Floats]:
+def _rounded(
+    torus: Torus[FromSeries], amplitudes: list[Any], order: int
+) -> tuple[Ints, Floats]:
     """An order in doubles: the errors are those of forces, over their divisors.
 
     The largest force of a harmonic is known to about as many EPS as the order says.
     """
-    series, linear = torus.series, torus.chain.frequencies()
+    series, linear = torus.origin.series, torus.chain.frequencies()
     nu, moduli = series.harmonic_terms(amplitudes, order, absolute=True)
     omega = np.array([float(w) for w in torus.frequencies])
     chosen = linear.copy()
@@ -259,9 +261,11 @@ def _rounded(torus: QTorus, amplitudes: list[Any], order: int) -> tuple[Ints, Fl
     return nu, np.where(moduli > 0, errors, 0.0)
 
 
-def _within_radii(torus: QTorus, amplitudes: list[Any], order: int) -> tuple[Ints, Floats]:
+def _within_radii(
+    torus: Torus[FromSeries], amplitudes: list[Any], order: int
+) -> tuple[Ints, Floats]:
     """An order with digits: its radius, for every monomial of a harmonic."""
-    series = torus.series
+    series = torus.origin.series
     nu, index = series.grading.harmonics(series.degree(order))
     seeds = np.abs(series.scaled_seeds(amplitudes).astype(float))
     monomials = np.prod(seeds ** series.grading.powers(series.degree(order)), axis=1)
@@ -272,7 +276,7 @@ def _within_radii(torus: QTorus, amplitudes: list[Any], order: int) -> tuple[Int
     return nu, 2 * radius / kappa * sums[:, None] / linear
 
 
-def _of_amplitudes(torus: QTorus) -> float:
+def _of_amplitudes(torus: Torus[FromSeries]) -> float:
     """Relative error of the amplitudes: rounding of the frequency series over its derivative.
 
     With digits what was asked for.
@@ -280,8 +284,10 @@ def _of_amplitudes(torus: QTorus) -> float:
     if torus.digits is not None:
         return float(10.0**-torus.digits)
     squares = np.array([float(a) ** 2 for a in torus.amplitudes.values()])
-    terms, slopes = torus.series.frequency_terms(squares, torus.frequency_order)
-    left = EPS * np.abs(terms[1:]).sum(axis=0) * (torus.frequency_order + 2)
+    terms, slopes = torus.origin.series.frequency_terms(
+        squares, torus.origin.frequency_order
+    )
+    left = EPS * np.abs(terms[1:]).sum(axis=0) * (torus.origin.frequency_order + 2)
     try:
         inverse = np.abs(np.linalg.inv(slopes.sum(axis=0)))
     except np.linalg.LinAlgError:
@@ -292,7 +298,7 @@ def _of_amplitudes(torus: QTorus) -> float:
 # tori with digits
 
 
-def _of_digits(torus: PreciseTorus) -> _Errors:
+def _of_digits(torus: Torus[IterativeRefinement]) -> _Errors:
     """The bound of the residual over the divisors, at harmonics next to its own, too.
 
     That of the amplitudes goes along the family.
@@ -306,7 +312,7 @@ def _of_digits(torus: PreciseTorus) -> _Errors:
         (rates[:, None] - equation.linear) * (rates[:, None] + equation.linear)
     )
     divisors[rows] = np.abs(equation.divisors(shifts_of(torus)))
-    left = SAFETY * float(torus.bound) * _largest_acceleration(torus)
+    left = SAFETY * float(torus.origin.bound) * _largest_acceleration(torus)
     with np.errstate(divide="ignore"):
         sizes = np.where(equation.projection.at(around).mask, left / divisors, 0.0)
     cosines = torus.cosines.astype(float)
@@ -316,7 +322,7 @@ def _of_digits(torus: PreciseTorus) -> _Errors:
     return _Errors(around, rates, sizes)
 
 
-def _largest_acceleration(torus: PreciseTorus) -> float:
+def _largest_acceleration(torus: Torus[IterativeRefinement]) -> float:
     """Of a mode, at some times."""
     doubles = torus.in_doubles()
     slowest = min(float(w) for w in torus.frequencies)

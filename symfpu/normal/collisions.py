@@ -13,10 +13,10 @@ import numpy as np
 
 from symfpu.normal.modes import NormalMode
 from symfpu.normal.reduction import LEAST_ACTION
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 
-def undecided_modes(torus: QuasiPeriodic, modes: Sequence[NormalMode]) -> tuple[int, ...]:
+def undecided_modes(torus: Torus, modes: Sequence[NormalMode]) -> tuple[int, ...]:
     """Those of the modes that may be elliptic or hyperbolic; of a ring none is said to be."""
     if torus.chain.periodic:
         return ()
@@ -39,7 +39,7 @@ def _hidden(mode: NormalMode) -> bool:
     return bool(abs(mode.action) < LEAST_ACTION * mode.sigma)
 
 
-def _meeting(torus: QuasiPeriodic, mode: NormalMode, other: NormalMode) -> bool:
+def _meeting(torus: Torus, mode: NormalMode, other: NormalMode) -> bool:
     """Whether sigma and nu.omega - sigma' of the other signature may be one number."""
     sign = mode.signature * other.signature or 1
     coupled = mode.harmonics @ np.array(torus.seeds) % 2 == (mode.mode + other.mode) % 2

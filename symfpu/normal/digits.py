@@ -20,17 +20,8 @@ from symfpu.normal.correction import NormalCorrection
 from symfpu.normal.kronecker import KroneckerFlow, multiplied
 from symfpu.normal.linearised import Linearised, Values
 from symfpu.normal.modes import NormalMode
-from symfpu.numbers.arithmetic import (
-    doubles_as_integers,
-    from_integers,
-    with_digits,
-)
-from symfpu.refinement.digits import (
-    CARRIED_DIGITS,
-    CHECKED,
-    MOST_HARMONICS,
-    SPARE_DIGITS,
-)
+from symfpu.numbers.arithmetic import doubles_as_integers, from_integers, with_digits
+from symfpu.refinement.digits import CARRIED_DIGITS, CHECKED, MOST_HARMONICS, SPARE_DIGITS
 from symfpu.refinement.harmonics import within_reach
 from symfpu.refinement.iterative_refinement import (
     CHECK_BITS,
@@ -43,7 +34,7 @@ from symfpu.refinement.iterative_refinement import (
 )
 from symfpu.refinement.kronecker import Integers
 from symfpu.refinement.lattice import Floats, Ints, dilated
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 FAR = 1e-6  # change of sigma, relative, that leads to another mode
 SETTLED = 15  # digits of sigma and p up to which their doubles change, and the Jacobian
@@ -52,7 +43,7 @@ SETTLED = 15  # digits of sigma and p up to which their doubles change, and the 
 class PreciseModes:
     """The normal modes of one torus with many digits, each refined from doubles."""
 
-    def __init__(self, torus: QuasiPeriodic) -> None:
+    def __init__(self, torus: Torus) -> None:
         assert torus.digits is not None
         self.torus, self.digits = torus, torus.digits
         with mpmath.workdps(self.digits + CARRIED_DIGITS):
@@ -80,7 +71,7 @@ class PreciseModes:
         return problem.result(left)
 
 
-def fitted_harmonics(torus: QuasiPeriodic) -> Ints:
+def fitted_harmonics(torus: Torus) -> Ints:
     """One of each pair: those in which the torus' own coefficients reach its last digit."""
     assert torus.digits is not None
     sizes = [max(abs(x) for x in row) for row in torus.cosines]
@@ -102,7 +93,7 @@ class Stage:
     chosen : one of each pair, (H, s).
     """
 
-    def __init__(self, torus: QuasiPeriodic, chosen: Ints, digits: int) -> None:
+    def __init__(self, torus: Torus, chosen: Ints, digits: int) -> None:
         self.torus, self.chosen, self.digits = torus, chosen, digits
         self.flow = Linearised(torus.in_doubles(), chosen)
         self.fixed = KroneckerFlow(torus, self.flow.harmonics, int(mpmath.mp.prec))

@@ -9,7 +9,7 @@ from typing import Any
 from symfpu.normal.modes import NoNormalModes, NormalModes
 from symfpu.normal.resonances import LOCKED, ParametricResonance
 from symfpu.normal.torus import LENGTH, resonances_near
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 KEPT_RESONANCES = 10  # the nearest
 
@@ -29,7 +29,7 @@ class NormalFrequencies:
     NormalFrequencies(stable, sigma_1=0.7..., sigma_3=1.8..., residual ...)
     """
 
-    torus: QuasiPeriodic = field(repr=False)
+    torus: Torus = field(repr=False)
     frequencies: Mapping[int, float | complex]
     signatures: Mapping[int, int]
     residual: float
@@ -83,7 +83,7 @@ def frequencies_of(
 
 
 def frequencies_again(
-    torus: QuasiPeriodic, frequencies: Mapping[int, complex], **known: Any
+    torus: Torus, frequencies: Mapping[int, complex], **known: Any
 ) -> NormalFrequencies:
     """Those of a record, whose resonances follow from them."""
     real = {q: complex(w).real for q, w in frequencies.items()}

@@ -17,7 +17,7 @@ from symfpu.chain.tension_terms import Terms, stiffness_terms
 from symfpu.numbers.arithmetic import mpf
 from symfpu.refinement.kronecker import Box, Integers, KroneckerForce
 from symfpu.refinement.lattice import Ints
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 NEAR_REACH = 1.01  # times the largest stretch
 
@@ -28,7 +28,7 @@ class KroneckerFlow(KroneckerForce):
     harmonics : of both signs, (M, s). Made at a working precision of mpmath above the bits.
     """
 
-    def __init__(self, torus: QuasiPeriodic, harmonics: Ints, bits: int) -> None:
+    def __init__(self, torus: Torus, harmonics: Ints, bits: int) -> None:
         self.harmonics = harmonics
         every = np.concatenate([harmonics, torus.harmonics])
         box = Box(np.abs(every).max(axis=0), whole=False)
@@ -45,7 +45,7 @@ class KroneckerFlow(KroneckerForce):
         """Of V''(r) - 1."""
         return stiffness_terms(self.chain, self.bits, reach)
 
-    def _packed_slopes(self, torus: QuasiPeriodic) -> list[Any]:
+    def _packed_slopes(self, torus: Torus) -> list[Any]:
         """V''(r) - 1 of half of the bonds, as polynomials."""
         each_fixed = np.frompyfunc(lambda x: self.fixed(mpf(x)), 1, 1)
         stretches = self.stretches(torus.harmonics, each_fixed(torus.cosines))
@@ -99,7 +99,7 @@ class KroneckerFlow(KroneckerForce):
         return np.asarray(found)
 
 
-def _reach(torus: QuasiPeriodic) -> float:
+def _reach(torus: Torus) -> float:
     """What no stretch of a torus exceeds."""
     stretches = np.abs(torus.chain.stretches(torus.cosines.astype(float)))
     return float(NEAR_REACH * stretches.sum(axis=0).max())

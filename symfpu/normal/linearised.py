@@ -24,7 +24,7 @@ from symfpu.chain.projections.standing import SineProjection
 from symfpu.refinement.invariance import ROWS, InvarianceEquation
 from symfpu.refinement.lattice import WORKERS, Floats, Ints, canonical_signs
 from symfpu.refinement.tori import shifts_of
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 from symfpu.tori.unfolding import folded
 
 Values = NDArray[Any]  # doubles or complex doubles
@@ -39,7 +39,7 @@ class Linearised:
     V'' - 1 at the points, (B, points).
     """
 
-    def __init__(self, torus: QuasiPeriodic, harmonics: Ints) -> None:
+    def __init__(self, torus: Torus, harmonics: Ints) -> None:
         both = of_both_signs(harmonics)
         if torus.stands:
             half = folded(torus)
@@ -209,7 +209,7 @@ def of_both_signs(harmonics: Ints) -> Ints:
 
 
 def coefficients_by_harmonic(
-    torus: QuasiPeriodic,
+    torus: Torus,
 ) -> dict[tuple[int, ...], Floats]:
     """The rows (C,) of a torus, the first number of every harmonic that is not 0 positive."""
     signed = canonical_signs(np.asarray(torus.harmonics))

@@ -19,20 +19,13 @@ import numpy as np
 
 from symfpu.normal.linearised import Linearised, Values
 from symfpu.normal.modes import NormalModes
-from symfpu.normal.reduction import (
-    FINE,
-    LARGEST_STEP,
-    Block,
-    Bordered,
-    shares_of,
-    steps_of,
-)
+from symfpu.normal.reduction import FINE, LARGEST_STEP, Block, Bordered, shares_of, steps_of
 from symfpu.normal.resonances import DIFFERENCE, ParametricResonance
 from symfpu.normal.search import at_harmonics
 from symfpu.normal.torus import finest_flow
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 STEPS = 8  # of sigma, for one torus
 ENOUGH = 1e-9  # relative step of sigma that ends them: what is left is its square
@@ -110,7 +103,7 @@ class NormalCondition(ABC):
         by_cosine[outside] = own.equation.slope_changes(half, weights)[inside]
         return by_cosine, by_shift
 
-    def error(self, torus: QuasiPeriodic) -> float:
+    def error(self, torus: Torus) -> float:
         """Of the value on a torus that was found, about: rounding, and what its residual makes."""
         omega = np.array([abs(float(w)) for w in torus.frequencies])
         return self._rounding + torus.residual() * float(np.abs(self._slope) @ omega)

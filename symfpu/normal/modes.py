@@ -25,7 +25,7 @@ from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, text, with_digits
 from symfpu.numbers.public import public
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 ELLIPTIC, HYPERBOLIC = "elliptic", "hyperbolic"
 SIGMA_DIGITS, GROWTH_DIGITS = 13, 10  # that are shown of doubles
@@ -195,7 +195,7 @@ class NormalModes(Shown, Gridded):
     1     3  elliptic          1
     """
 
-    torus: QuasiPeriodic
+    torus: Torus
     modes: tuple[NormalMode, ...]
     guesses: dict[int, float] = field(repr=False)
     resonances: tuple[ParametricResonance, ...] = field(repr=False)

@@ -12,7 +12,7 @@ import numpy as np
 
 from symfpu.normal.modes import NormalMode
 from symfpu.normal.reduction import SURE
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 SAME = 1e-9  # difference of two frequencies that are one
 ALIKE = 1e-3  # relative difference of one coefficient of one solution, in other harmonics
@@ -23,7 +23,7 @@ RIVAL = 0.5
 class Names:
     """The modes after which directions of one torus are named."""
 
-    def __init__(self, torus: QuasiPeriodic) -> None:
+    def __init__(self, torus: Torus) -> None:
         self._modes = torus.chain.mode_numbers
         self._normal = [q for q in self._modes if q not in torus.seeds]
         self._travels = torus.travels

@@ -19,7 +19,7 @@ from symfpu.chain.chain import Chain
 from symfpu.normal.standing import coupled_groups
 from symfpu.numbers.public import public
 from symfpu.refinement.lattice import Ints, dilated
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 
 class Frequencies(Protocol):
@@ -29,7 +29,7 @@ class Frequencies(Protocol):
     def frequencies(self) -> Mapping[int, complex]: ...
 
     @property
-    def torus(self) -> QuasiPeriodic: ...
+    def torus(self) -> Torus: ...
 
 
 PARAMETRIC, SUM, DIFFERENCE, OWN = "parametric", "sum", "difference", "own"

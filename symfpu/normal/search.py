@@ -17,13 +17,7 @@ from symfpu.normal.digits import PreciseModes
 from symfpu.normal.linearised import Linearised, Values
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.names import Names
-from symfpu.normal.reduction import (
-    LEAST_OVERLAP,
-    Reduced,
-    continued,
-    followed,
-    reduced,
-)
+from symfpu.normal.reduction import LEAST_OVERLAP, Reduced, continued, followed, reduced
 from symfpu.normal.resonances import OWN, ParametricResonance
 from symfpu.normal.torus import (
     LENGTH,
@@ -38,7 +32,7 @@ from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer
 from symfpu.refinement.iterative_refinement import Failure
 from symfpu.refinement.lattice import Ints
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 TOLERANCE = 1e-10  # residual of a mode whose harmonics are enough
 SHOWN_DIVISORS = 5
@@ -63,7 +57,7 @@ LARGER = "take larger amplitudes, or leave the mode out by modes="
 
 @public
 def normal_modes(
-    solution: QuasiPeriodic,
+    solution: Torus,
     *,
     modes: Iterable[int] | None = None,
     resonance_length: int = LENGTH,
@@ -73,7 +67,7 @@ def normal_modes(
 
     solution : of any potential and of any number of angles, refined: its residual is at most
         1e-9. With fixed ends, or of a ring: travelling waves, or what `unfold` gave.
-        Dimensionless. Of one that was refined to many digits (PreciseTorus)
+        Dimensionless. Of one that was refined to many digits (`refine` with digits)
         frequencies and eigenfunctions have as many, by iterative refinement; any other is rounded
         to doubles, as `solution.in_doubles()` is.
     modes : which of the N-1-s modes, of a ring signed; default all that can be told from others.
@@ -124,7 +118,7 @@ def _require(
 
 
 def _in_digits(
-    torus: QuasiPeriodic,
+    torus: Torus,
     found: Mapping[int, NormalMode],
     length: int,
     tell: Progress,
@@ -147,7 +141,7 @@ def _in_digits(
 
 
 def followed_modes(
-    solution: QuasiPeriodic,
+    solution: Torus,
     before: NormalModes | None,
     *,
     modes: Iterable[int] | None = None,
@@ -171,7 +165,7 @@ def followed_modes(
     return search.result(solution, found, missing), missing
 
 
-Between = Callable[[float], QuasiPeriodic]
+Between = Callable[[float], Torus]
 
 
 class Before(NamedTuple):
@@ -191,7 +185,7 @@ class _Search:
 
     def __init__(
         self,
-        torus: QuasiPeriodic,
+        torus: Torus,
         length: int,
         before: Before | None = None,
         between: Between | None = None,
@@ -237,7 +231,7 @@ class _Search:
 
     def result(
         self,
-        solution: QuasiPeriodic,
+        solution: Torus,
         found: dict[int, NormalMode],
         missing: Mapping[int, NoNormalModes],
     ) -> NormalModes:

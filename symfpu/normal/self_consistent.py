@@ -16,11 +16,7 @@ import numpy as np
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.normal.modes import NoNormalModes
-from symfpu.normal.phantom import (
-    NormalFrequencySeries,
-    of_phantom,
-    phantom_series,
-)
+from symfpu.normal.phantom import NormalFrequencySeries, of_phantom, phantom_series
 from symfpu.normal.resonances import resonances_of
 from symfpu.normal.torus import LENGTH, second_order
 from symfpu.numbers.arithmetic import DOUBLES, GUARD_DIGITS, MULTIPRECISION
@@ -29,7 +25,7 @@ from symfpu.numbers.typed import integer, order_of
 from symfpu.refinement.guesses import require_torus
 from symfpu.series.arguments import digits_of
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
+from symfpu.tori.torus import Torus, require_solution
 
 STEPS, STEPS_DIGITS = 30, 60  # with doubles, with digits
 LARGEST_MOVE = 0.1  # of sigma, relative, away from the guess
@@ -41,7 +37,7 @@ DECIMALS = 25  # of trials in doubles: those of their shifts
 
 @public
 def solve_normal_frequency(
-    solution: QuasiPeriodic,
+    solution: Torus,
     mode: int,
     order: int,
     *,
@@ -99,7 +95,7 @@ class _Search:
 
     def __init__(
         self,
-        solution: QuasiPeriodic,
+        solution: Torus,
         q: int,
         order: int,
         digits: int | None,
@@ -112,7 +108,7 @@ class _Search:
         pairs = zip(solution.seeds, solution.frequencies, strict=True)
         self.omega = dict(sorted(pairs))
         with self.numbers.context(digits):
-            A = amplitudes_of(solution)
+            A = solution.amplitudes
             squares = [0, *(A[n] ** 2 for n in self.omega)]
             self.squares = self.numbers.array(squares)
 

@@ -11,11 +11,11 @@ from collections.abc import Mapping
 from symfpu.chain.chain import Chain
 from symfpu.chain.projections.standing import is_sine
 from symfpu.tori.columns import half_of
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 
 def coupled_groups(
-    torus: QuasiPeriodic, sigma: Mapping[int, float]
+    torus: Torus, sigma: Mapping[int, float]
 ) -> list[tuple[Chain, dict[int, float]]]:
     """Frequencies that may couple, by mode, with the chain whose selection rules they have.
 

@@ -16,11 +16,11 @@ from symfpu.normal.resonances import ParametricResonance, resonances_of
 from symfpu.normal.standing import coupled_groups
 from symfpu.numbers.arithmetic import DOUBLES, arithmetic_of
 from symfpu.numbers.typed import integer
-from symfpu.refinement.digits import PreciseTorus
+from symfpu.refinement.digits import IterativeRefinement
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.tori import USEFUL
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of, require_solution
+from symfpu.tori.torus import Torus, comes_from, require_solution
 from symfpu.tori.unfolding import folded
 
 REFINED = USEFUL  # residual of a torus, relative, above which it is refused
@@ -31,19 +31,19 @@ SMALLEST_KEPT = (
 LENGTH = 12  # sum |nu_i| of the resonances that are listed
 
 
-def checked_solution(solution: object) -> QuasiPeriodic:
+def checked_solution(solution: object) -> Torus:
     """The solution in doubles; InputError for what is no refined torus."""
     torus = require_solution(solution, "solution").in_doubles()
     require_refined(torus, REFINED)
     return torus
 
 
-def in_digits(torus: QuasiPeriodic) -> bool:
+def in_digits(torus: Torus) -> bool:
     """Whether its normal modes and its twist have digits: on a ring they are in doubles."""
-    return isinstance(torus, PreciseTorus) and not torus.chain.periodic
+    return comes_from(torus, IterativeRefinement) and not torus.chain.periodic
 
 
-def require_refined(torus: QuasiPeriodic, level: float) -> None:
+def require_refined(torus: Torus, level: float) -> None:
     """InputError for a torus whose relative residual is above a level."""
     residual = torus.residual()
     if not residual <= level:
@@ -52,7 +52,7 @@ def require_refined(torus: QuasiPeriodic, level: float) -> None:
         raise InputError("solution", given, allowed, "refine it first: refine(solution)")
 
 
-def checked_modes(torus: QuasiPeriodic, modes: Iterable[int] | None) -> tuple[int, ...]:
+def checked_modes(torus: Torus, modes: Iterable[int] | None) -> tuple[int, ...]:
     """Those asked for, ascending; InputError for what is no normal mode."""
     normal = [q for q in torus.chain.mode_numbers if q not in torus.seeds]
     if modes is None:
@@ -67,7 +67,7 @@ def checked_modes(torus: QuasiPeriodic, modes: Iterable[int] | None) -> tuple[in
     return tuple(sorted(given))
 
 
-def second_order(torus: QuasiPeriodic) -> dict[int, float]:
+def second_order(torus: Torus) -> dict[int, float]:
     """Omega_q with the closed shift of second order by the amplitudes of the seeds, by mode.
 
     Of a ring without it, but for the sines about standing waves.
@@ -82,7 +82,7 @@ def second_order(torus: QuasiPeriodic) -> dict[int, float]:
     guesses = {}
     for q in chain.mode_numbers:
         shift = 0.0
-        for n, A in amplitudes_of(torus).items():
+        for n, A in torus.amplitudes.items():
             (a, b), c = shift_coefficients(chain.N, q, n)
             square = float(squares[n - 1])
             by_cubic = cubic**2 * (float(a) + float(b) * square)
@@ -94,7 +94,7 @@ def second_order(torus: QuasiPeriodic) -> dict[int, float]:
 class Flows:
     """Linearised flows of one torus with ever more harmonics, made when they are needed."""
 
-    def __init__(self, torus: QuasiPeriodic) -> None:
+    def __init__(self, torus: Torus) -> None:
         self._torus, self._known = torus, _kept_rows(torus)
         self._made: list[Linearised] = []
 
@@ -106,19 +106,19 @@ class Flows:
             yield self._made[place]
 
 
-def finest_flow(torus: QuasiPeriodic) -> Linearised:
+def finest_flow(torus: Torus) -> Linearised:
     """The one with the most harmonics."""
     return _flow(torus, _kept_rows(torus), HEIGHTS[-1])
 
 
 def _flow(
-    torus: QuasiPeriodic, known: Mapping[tuple[int, ...], Floats], height: float
+    torus: Torus, known: Mapping[tuple[int, ...], Floats], height: float
 ) -> Linearised:
     """With harmonics of coefficients above a part of the largest; known : of `_kept_rows`."""
     return Linearised(torus, _harmonics_of(torus, known, height))
 
 
-def _kept_rows(torus: QuasiPeriodic) -> dict[tuple[int, ...], Floats]:
+def _kept_rows(torus: Torus) -> dict[tuple[int, ...], Floats]:
     """Coefficients of a torus by harmonic, without those that are rounding."""
     known = coefficients_by_harmonic(torus)
     largest = max(float(np.abs(row).max()) for row in known.values())
@@ -127,7 +127,7 @@ def _kept_rows(torus: QuasiPeriodic) -> dict[tuple[int, ...], Floats]:
 
 
 def _harmonics_of(
-    torus: QuasiPeriodic, known: Mapping[tuple[int, ...], Floats], height: float
+    torus: Torus, known: Mapping[tuple[int, ...], Floats], height: float
 ) -> Ints:
     """Those of coefficients above a part of the largest, (H, s); known : of `_kept_rows`."""
     columns = len(next(iter(known.values())))
@@ -138,7 +138,7 @@ def _harmonics_of(
 
 
 def resonances_near(
-    torus: QuasiPeriodic, sigma: Mapping[int, Any], length: int
+    torus: Torus, sigma: Mapping[int, Any], length: int
 ) -> list[ParametricResonance]:
     """Those of real parts in doubles or in digits; a distance has all its digits."""
     omega = tuple(float(w) for w in torus.frequencies)
@@ -152,7 +152,7 @@ def resonances_near(
 
 
 def _in_all_digits(
-    torus: QuasiPeriodic, found: list[ParametricResonance], sigma: Mapping[int, Any]
+    torus: Torus, found: list[ParametricResonance], sigma: Mapping[int, Any]
 ) -> list[ParametricResonance]:
     """Resonances with the distances of frequencies in digits."""
     with torus.numbers.context(torus.digits):

@@ -18,7 +18,8 @@ from symfpu.errors import SymfpuError
 from symfpu.paper.claims import Claim, judged
 from symfpu.paper.printed import PrintedTorus
 from symfpu.paper.starts import period_digits, printed_row, printed_torus
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 
@@ -63,11 +64,11 @@ def breather_claims() -> list[Claim]:
     ]
 
 
-def closing(row: PrintedTorus, torus: QTorus) -> Closing:
+def closing(row: PrintedTorus, torus: Torus[FromSeries]) -> Closing:
     """How well both amplitudes close; torus : the series of the printed frequency."""
     (seed,) = row.seeds
     amplitude = float(row.amplitudes[0])
-    printed = replace(torus, amplitudes={seed: amplitude})
+    printed = replace(torus.origin, amplitudes=(amplitude,)).torus(torus.phases)
     excess = amplitude / float(torus.amplitudes[seed]) - 1
     return Closing(period_digits(row, printed), period_digits(row, torus), excess)
 
@@ -166,11 +167,11 @@ def precision_claim(closings: Mapping[str, Closing]) -> Claim:
     return Claim("6.4", text, "4 to 6, 10", ours, judged(stated, reached))
 
 
-def arrival(torus: QTorus) -> tuple[int, float]:
+def arrival(torus: Torus[FromSeries]) -> tuple[int, float]:
     """The first order whose residual is near the least, and the residual there."""
     residuals = {}
-    for k in range(2, torus.order + 1, ORDER_STRIDE):
-        residuals[k] = float(replace(torus, order=k).residual())
+    for k in range(2, torus.origin.order + 1, ORDER_STRIDE):
+        residuals[k] = float(torus.origin.cut_at(k).torus(torus.phases).residual())
     least = min(residuals.values())
     first = next(k for k, value in residuals.items() if value <= ARRIVED_FACTOR * least)
     return first, residuals[first]

@@ -12,7 +12,8 @@ from symfpu.localization.profiles import normalised_averages, profile_distance
 from symfpu.paper.claims import Claim, judged
 from symfpu.paper.judgements import ENERGY_FLOOR, SIMILAR_DECADES
 from symfpu.paper.printed import PrintedTorus
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 SHOWN_MODES = 8  # of Figs. 7 and 9
@@ -21,7 +22,7 @@ SHOWN_ONLY = "(compared in the figure, not stated)"
 ALIKE_TEXT = "breathers have quite similar energy profiles as their FPU-trajectories"
 
 
-def profiles_of(torus: QTorus, orbits: dict[str, Orbit]) -> dict[str, Floats]:
+def profiles_of(torus: Torus[FromSeries], orbits: dict[str, Orbit]) -> dict[str, Floats]:
     """Normalised average spectra of a series and of orbits."""
     series = np.asarray(torus.average_spectrum() / torus.energy(), dtype=float)
     profiles = {"PL": series}

@@ -19,7 +19,7 @@ from symfpu.localization.profiles import fpu_trajectory
 from symfpu.paper.claims import Claim, judged
 from symfpu.series.lindstedt import lindstedt
 from symfpu.spectral.mapping import FrequencyMap, frequency_map
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 
@@ -61,7 +61,7 @@ def distances() -> tuple[tuple[str, ...], list[float]]:
 
 
 def _distance(chain: Chain, energy: str) -> float:
-    breather: QuasiPeriodic = breather_at_energy(chain, 1, energy)
+    breather: Torus = breather_at_energy(chain, 1, energy)
     Q, P = breather.state()
     amplitude = repr(float(breather.amplitudes[1]))
     start, momenta = fpu_trajectory(chain, {1: amplitude})

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import PeriodicOrbit
+from symfpu.breathers.balance import HarmonicBalance
 from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import decimal
@@ -21,6 +21,7 @@ from symfpu.paper.convergence_claims import convergence_claims
 from symfpu.paper.convergence_fig1 import CancellationStudy, cancellation_study
 from symfpu.paper.convergence_fig9 import BreatherStudy, SchemeLimit, breather_study
 from symfpu.reports.tables import fifteen_digits, markdown_table
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment
 
 Floats = NDArray[np.float64]
@@ -139,7 +140,7 @@ def breather_text(data: BreatherStudy) -> tuple[str, ...]:
     )
 
 
-def _orbit_row(name: str, orbit: PeriodicOrbit) -> list[str]:
+def _orbit_row(name: str, orbit: Torus[HarmonicBalance]) -> list[str]:
     row = [name, f"{float(orbit.frequency):.14f}"]
     row += [f"{orbit.amplitude:.11f}", f"{orbit.energy():.10f}"]
     harmonic = orbit.harmonic_energies().sum()
@@ -171,7 +172,7 @@ def _rounded(values: ByOrder) -> dict[str, float]:
     return {str(k): fifteen_digits(value) for k, value in values.items()}
 
 
-def _orbit_record(orbit: PeriodicOrbit) -> dict[str, str]:
+def _orbit_record(orbit: Torus[HarmonicBalance]) -> dict[str, str]:
     return {"frequency": decimal(orbit.frequency), "amplitude": repr(orbit.amplitude)}
 
 

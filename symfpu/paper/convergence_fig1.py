@@ -22,8 +22,9 @@ from symfpu.series.divisors import divisor
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import frequency_orders, solve_amplitudes
+from symfpu.tori.from_series import FromSeries
 from symfpu.tori.resummation import pade_amplitudes, resum_by_order
-from symfpu.tori.torus import QTorus
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment, assess
 
 Floats = NDArray[np.float64]
@@ -101,7 +102,7 @@ def cancellation_study(progress: Progress = unheard) -> CancellationStudy:
     amplitudes = {}
     for K in SHOWN_ORDERS:
         roots = pade_amplitudes(series, torus.amplitudes, K)
-        truncated = tuple(map(float, torus.history[K]))
+        truncated = tuple(map(float, torus.origin.history[K]))
         amplitudes[K] = (truncated, tuple(map(float, roots.values())))
     rates = torus.frequencies
     return CancellationStudy(
@@ -153,10 +154,9 @@ def _variant(
     """What a series shows, with its own amplitudes or with rounded ones."""
     torus = solve_amplitudes(series, frequency_order=FIG1_AMPLITUDE_ORDER)
     if amplitude_digits is not None:
-        rounded = {}
-        for q, a in torus.amplitudes.items():
-            rounded[q] = mpmath.mpf(mpmath.nstr(a, amplitude_digits))
-        torus = replace(torus, amplitudes=rounded)
+        shown = [mpmath.nstr(a, amplitude_digits) for a in torus.amplitudes.values()]
+        rounded = tuple(map(mpmath.mpf, shown))
+        torus = replace(torus.origin, amplitudes=rounded).torus(torus.phases)
     found = assess(series, torus, resummed=False)
     _, lower = found.sums[1]
     return Variant(name, dict(found.differences), lower, found.residuals)
@@ -173,15 +173,15 @@ def _coincidence(series: LindstedtSeries) -> tuple[int, int]:
     return b // shared, -a // shared
 
 
-def growth_ratios(torus: QTorus) -> dict[int, float]:
+def growth_ratios(torus: Torus[FromSeries]) -> dict[int, float]:
     """By order, the coefficient of the resonant harmonic over that two orders before."""
     values = resonant_coefficients(torus)
     return {k: values[k] / values[k - 2] for k in values if k - 2 in values}
 
 
-def resonant_coefficients(torus: QTorus) -> dict[int, float]:
+def resonant_coefficients(torus: Torus[FromSeries]) -> dict[int, float]:
     """By order, the coefficient of the resonant harmonic in the resonant mode of a 2-torus."""
-    series = torus.series
+    series = torus.origin.series
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     first = sum(map(abs, RESONANT_HARMONIC)) - 1
     values: dict[int, float] = {}
@@ -193,7 +193,7 @@ def resonant_coefficients(torus: QTorus) -> dict[int, float]:
     return values
 
 
-def resonant_pole(torus: QTorus) -> float:
+def resonant_pole(torus: Torus[FromSeries]) -> float:
     """mu^2, in units of the actual one, at which mode 3 is in resonance with the harmonic.
 
     The nearest real one: a negative one too keeps the series from converging.
@@ -211,7 +211,7 @@ def resonant_pole(torus: QTorus) -> float:
     return second + (second - first) * near / (far - near)
 
 
-def _probed_pole(torus: QTorus, drive: Fraction, shift: str) -> float:
+def _probed_pole(torus: Torus[FromSeries], drive: Fraction, shift: str) -> float:
     """The pole with the frequency of the probe so far from that of the harmonic."""
     seeds = (*torus.seeds, RESONANT_MODE)
     frequencies = (*torus.frequencies, drive + Fraction(shift))

@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import PeriodicOrbit, breather_at_amplitude, periodic_orbit
+from symfpu.breathers.balance import HarmonicBalance, breather_at_amplitude, periodic_orbit
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.family import Family
@@ -24,7 +24,7 @@ from symfpu.paper.printed import FIG9_BREATHER
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import frequency_orders, solve_amplitudes
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment, assess
 
 Floats = NDArray[np.float64]
@@ -49,8 +49,8 @@ class BreatherStudy:
     : of the series at the printed order.
     """
 
-    orbit: PeriodicOrbit
-    at_printed: PeriodicOrbit
+    orbit: Torus[HarmonicBalance]
+    at_printed: Torus[HarmonicBalance]
     amplitudes: dict[int, float]
     singularity: float
     spread: float
@@ -69,7 +69,7 @@ class SchemeLimit:
     divisors ends. family : on both sides of the limit.
     """
 
-    orbit: PeriodicOrbit
+    orbit: Torus[HarmonicBalance]
     frequencies: tuple[float, ...]
     amplitudes: tuple[float, ...]
     ends: tuple[float, ...]
@@ -92,7 +92,7 @@ def breather_study(progress: Progress = unheard) -> BreatherStudy:
     singularity, spread, exponent = _singularity(series)
     progress("convergence: periodic orbits", NO_FRACTION)
     printed = float(FIG9_BREATHER.amplitudes[0])
-    amplitudes = {K: float(a[0]) for K, a in torus.history.items()}
+    amplitudes = {K: float(a[0]) for K, a in torus.origin.history.items()}
     return BreatherStudy(
         orbit=periodic_orbit(chain, seed, rates[0]),
         at_printed=breather_at_amplitude(chain, seed, printed),
@@ -131,7 +131,7 @@ def scheme_limit(
     beyond = next(k for k, gap in enumerate(gaps) if gap < 0)
     omega = limit_frequency(chain, seed, rates[beyond - 1], rates[beyond])
     last = chosen[beyond - 1].torus
-    assert isinstance(last, QuasiPeriodic)
+    assert isinstance(last, Torus)
     by_harmonic = np.argsort(last.harmonics[:, 0])
     orbit = periodic_orbit(chain, seed, omega, last.cosines[by_harmonic])
     amplitudes = tuple(m.amplitudes[seed] for m in chosen)

@@ -14,12 +14,12 @@ from symfpu.errors import SymfpuError
 from symfpu.files.progress import NO_FRACTION, Progress, labelled, unheard
 from symfpu.paper.printed import PrintedTorus
 from symfpu.paper.series_errors import Decay, SeriesErrors, decay, series_errors
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 # of two refinements with different harmonics: the digits in which they agree are converged
 TOLERANCES = (1e-10, 1e-13)
@@ -54,7 +54,7 @@ class CorrectedRow:
     """
 
     printed: PrintedTorus
-    torus: RefinedTorus | None = field(repr=False)
+    torus: Torus[Newton] | None = field(repr=False)
     reason: str
     digits: int
     energy_digits: int
@@ -155,7 +155,7 @@ def _common_digits(values: Sequence[Mapping[Any, float]]) -> int:
     return min(MOST_DIGITS, int(-np.log10(max(change, LEAST_CHANGE))))
 
 
-def _energies(torus: RefinedTorus) -> dict[str, float]:
+def _energies(torus: Torus[Newton]) -> dict[str, float]:
     harmonic = torus.harmonic_energies().sum()
     average = torus.average_spectrum().sum()
     energies = {"H": float(torus.energy())}
@@ -169,7 +169,7 @@ def left_out(printed: PrintedTorus, reason: str) -> CorrectedRow:
     return CorrectedRow(printed, None, reason, 0, 0, {}, {}, np.nan, None)
 
 
-def _refined(printed: PrintedTorus, tell: Progress) -> tuple[list[RefinedTorus], str]:
+def _refined(printed: PrintedTorus, tell: Progress) -> tuple[list[Torus[Newton]], str]:
     """Exact tori with ever more harmonics, and what went wrong."""
     started = time.monotonic()
     limit = HEAVY_LIMIT if printed.label in HEAVY_ROWS else LIMIT
@@ -188,9 +188,9 @@ def _refined(printed: PrintedTorus, tell: Progress) -> tuple[list[RefinedTorus],
 
 def _refinements(
     printed: PrintedTorus, progress: Progress
-) -> tuple[list[RefinedTorus], str]:
+) -> tuple[list[Torus[Newton]], str]:
     """The tori of all tolerances until one fails, and how that one failed."""
-    found: list[RefinedTorus] = []
+    found: list[Torus[Newton]] = []
     try:
         tolerances, order = HEAVY_ROWS.get(printed.label, (TOLERANCES, GUESS_ORDER))
         guess = _guess(printed, order, progress)
@@ -205,7 +205,7 @@ def _refinements(
     return found, ""
 
 
-def _guess(printed: PrintedTorus, order: int, tell: Progress) -> QuasiPeriodic:
+def _guess(printed: PrintedTorus, order: int, tell: Progress) -> Torus:
     """Where Newton's method starts.
 
     A short series, or for one seed the periodic orbit, which needs none.

@@ -16,8 +16,9 @@ from symfpu.figures.panels import Curve, Panel
 from symfpu.paper.corrected import LEAST_DIGITS, LIMIT, CorrectedRow
 from symfpu.paper.series_errors import Decay, ScalingStudy, SeriesErrors
 from symfpu.paper.table import rounds_to
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.reports.tables import fifteen_digits, markdown_table
+from symfpu.tori.torus import Torus
 
 ErrorsByLabel = Mapping[str, Mapping[int, float]]
 
@@ -106,7 +107,7 @@ def energy_text(row: CorrectedRow, value: float) -> str:
     return f"{value:#.{digits}g}"
 
 
-def _amplitude_lines(row: CorrectedRow, torus: RefinedTorus) -> list[list[str]]:
+def _amplitude_lines(row: CorrectedRow, torus: Torus[Newton]) -> list[list[str]]:
     printed = dict(zip(row.printed.seeds, row.printed.amplitudes, strict=True))
     lines = []
     label = row.printed.label
@@ -117,7 +118,7 @@ def _amplitude_lines(row: CorrectedRow, torus: RefinedTorus) -> list[list[str]]:
     return lines
 
 
-def _energy_line(row: CorrectedRow, torus: RefinedTorus) -> list[str]:
+def _energy_line(row: CorrectedRow, torus: Torus[Newton]) -> list[str]:
     printed = row.printed.energy
     met = [name for name, value in row.energies.items() if rounds_to(value, printed)]
     deviations = row.energy_deviations

@@ -19,7 +19,7 @@ from symfpu.figures.alignment import alignment_panel
 from symfpu.figures.panels import Panel
 from symfpu.files.progress import Progress
 from symfpu.paper.starts import printed_row
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 Start = tuple[Floats, Floats]
@@ -146,7 +146,7 @@ def levels_apart(found: AlignmentIndices, foretold: Foretold) -> float:
 class TorusForecast:
     """Alignment indices of an exact torus in closed form."""
 
-    def __init__(self, torus: QuasiPeriodic, vectors: int) -> None:
+    def __init__(self, torus: Torus, vectors: int) -> None:
         self._torus, self._vectors, self._flow = torus, vectors, flow_of(torus)
 
     def __call__(self, times: Floats) -> Foretold:

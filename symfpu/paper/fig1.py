@@ -52,14 +52,14 @@ def figure1(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
 
 def figure1_panels(data: Figure1) -> tuple[Panel, ...]:
     """Panels (a) to (d): spectrum, amplitudes by order, cancellations, errors in time."""
-    seeds = data.torus.series.seeds
+    seeds = data.torus.origin.series.seeds
     differences = differences_panel("fig1b", data.differences, seeds)
     return (_spectra_panel(data), differences, _sums_panel(data), _errors_panel(data))
 
 
 def _spectra_panel(data: Figure1) -> Panel:
     curves = []
-    modes = list(range(1, data.torus.series.chain.N))
+    modes = list(range(1, data.torus.origin.series.chain.N))
     columns: dict[str, list[Any]] = {"q": modes}
     for k, spectrum in data.spectra.items():
         label = f"order {k}, residual {data.residuals[k]:.1e}"
@@ -144,10 +144,8 @@ def figure1_text(data: Figure1) -> tuple[str, ...]:
         f"Residual of the equations of motion by coordinate order: {', '.join(even)}."
     )
     reasons = "; ".join(data.assessment.reasons)
-    precision = (
-        f"Computed with {data.torus.series.precision}. In doubles the amplitudes of all "
-    )
-    precision += f"orders come out the same to {data.rounding:.1e}."
+    precision = f"Computed with {data.torus.origin.series.precision}. In doubles the "
+    precision += f"amplitudes of all orders come out the same to {data.rounding:.1e}."
     return (
         markdown_table(["claim", "printed", "computed"], rows),
         f"{residuals}\nThe least is at order {data.best_order}.",

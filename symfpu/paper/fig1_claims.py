@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,8 +26,9 @@ from symfpu.paper.printed import (
     TWO_TORUS,
 )
 from symfpu.paper.table import rounds_to
-from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.tori.torus import QTorus
+from symfpu.refinement.refined_torus import Newton
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 LEAST_DIFFERENCES = (3e-9, 3e-7)  # "a minimum level of 1e-8 .. 1e-7", to a factor of three
 LINE_SCATTER_DECADES = 0.5  # about a line that is one to the eye, over twenty decades
@@ -40,7 +40,7 @@ SLOPE_ERRORS = 3  # by which the slope of a decay is below zero
 
 
 def figure1_claims(
-    data: Figure1, exact: RefinedTorus, seen: FigureIndices, forecast: TorusForecast
+    data: Figure1, exact: Torus[Newton], seen: FigureIndices, forecast: TorusForecast
 ) -> tuple[Claim, ...]:
     """Claims on data of panels (a) to (d), the exact torus, and alignment indices of panel (e)."""
     cancellations = "cancellations by four orders of magnitude at k = 14"
@@ -69,10 +69,10 @@ def two_torus_claim(seen: FigureIndices, forecast: TorusForecast) -> Claim:
     return foretold_claim("3.2", text, 2, forecast.frames(), seen)
 
 
-def amplitudes_claim(torus: QTorus) -> Claim:
+def amplitudes_claim(torus: Torus[FromSeries]) -> Claim:
     """The printed amplitudes, and the orders at which they come out."""
     met = []
-    for k, values in torus.history.items():
+    for k, values in torus.origin.history.items():
         pairs = zip(values, TWO_TORUS.amplitudes, strict=True)
         if all(rounds_to(float(a), printed) for a, printed in pairs):
             met.append(k)
@@ -98,7 +98,7 @@ def settling_claim(data: Figure1) -> Claim:
     return Claim("3.2", text, FIG1_CLAIMS["best_difference"], ours, verdict)
 
 
-def convergence_claim(data: Figure1, exact: RefinedTorus) -> Claim:
+def convergence_claim(data: Figure1, exact: Torus[Newton]) -> Claim:
     """The verdict on the series; that on the torus is another."""
     best = data.best_order
     last = max(data.residuals)
@@ -157,8 +157,8 @@ def energy_claim(data: Figure1) -> Claim:
     """The energy at the best order, and at the last one."""
     met = []
     parts = []
-    for k in dict.fromkeys((data.best_order, data.torus.order)):
-        value = float(replace(data.torus, order=k).energy())
+    for k in dict.fromkeys((data.best_order, data.torus.origin.order)):
+        value = float(data.torus.origin.cut_at(k).torus().energy())
         met.append(rounds_to(value, TWO_TORUS.energy))
         parts.append(f"H = {value:.6f} with coordinates of order {k}")
     text = "the solution has the total energy E = 0.02345"
@@ -184,7 +184,7 @@ def _near(value: float, printed: float) -> bool:
 
 
 def localized_claim(
-    exact: RefinedTorus, floor_of: Callable[[RefinedTorus], Any] = spectrum_floor
+    exact: Torus[Newton], floor_of: Callable[[Torus[Newton]], Any] = spectrum_floor
 ) -> Claim:
     """Exponential decay beyond the seeds."""
     spectrum = np.asarray(exact.average_spectrum(), dtype=float)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,8 @@ from symfpu.paper.printed import (
 )
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import amplitude_history, solve_amplitudes
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment, assess
 
 Floats = NDArray[np.float64]
@@ -35,7 +36,7 @@ class Figure1:
     doubles.
     """
 
-    torus: QTorus
+    torus: Torus[FromSeries]
     assessment: Assessment
     spectra: dict[int, Floats]
     times: Floats
@@ -91,7 +92,7 @@ class Figure1:
     def _term_size(self) -> str:
         k = FIG1_CANCELLATION_ORDER
         size = self.sums[1][k]
-        without_mu = size / self.torus.series.chain.mu**k
+        without_mu = size / self.torus.origin.series.chain.mu**k
         return f"{size:.1e} at k = {k} (with mu^k; {without_mu:.1e} without)"
 
     def _largest_errors(self, order: int) -> tuple[float, float]:
@@ -117,19 +118,19 @@ def figure1_data(progress: Progress = unheard) -> Figure1:
     times = np.linspace(0.0, LAST_TIME, LOOKS)
     spectra, errors = {}, {}
     for k in sorted({assessment.best_order, FIG1_AMPLITUDE_ORDER}):
-        cut = replace(torus, order=k).in_doubles()
+        cut = torus.origin.cut_at(k).torus(torus.phases).in_doubles()
         spectra[k] = cut.average_spectrum() / cut.energy()
         total = cut.energy_error(times)
         errors[k] = (total, cut.energy_error(times, harmonic=True))
     return Figure1(torus, assessment, spectra, times, errors, rounding)
 
 
-def _rounding_of_doubles(torus: QTorus) -> float:
+def _rounding_of_doubles(torus: Torus[FromSeries]) -> float:
     """Largest relative error of the amplitudes of all orders, computed in doubles."""
     chain, seeds, rates = TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies
     doubles = amplitude_history(lindstedt(chain, seeds, rates, TWO_TORUS.order))
     errors = []
-    for k, amplitudes in torus.history.items():
+    for k, amplitudes in torus.origin.history.items():
         pairs = zip(amplitudes, doubles.amplitudes[k], strict=True)
         errors += [abs(float(b / a - 1)) for a, b in pairs]
     return max(errors)

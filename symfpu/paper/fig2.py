@@ -44,9 +44,10 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.tori import refine
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 TIME = 1e6  # the paper's
@@ -78,7 +79,7 @@ def figure2(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     floors = {"PL": normalised_floor(torus), "exact torus": normalised_floor(exact)}
     line = printed_line("Fig. 2a")
     amplitudes = list(torus.amplitudes.values())
-    sums = torus.series.absolute_sums(1, amplitudes, with_mu=True)
+    sums = torus.origin.series.absolute_sums(1, amplitudes, with_mu=True)
     title = "Fig. 2: the 4-torus of N = 32, seeds 1 to 4"
     claims = (
         *_profile_claims(profiles),
@@ -125,7 +126,7 @@ def _profile_claims(profiles: dict[str, Floats]) -> tuple[Claim, Claim]:
     )
 
 
-def identical_claim(torus: QTorus, orbit: Orbit) -> Claim:
+def identical_claim(torus: Torus[FromSeries], orbit: Orbit) -> Claim:
     """How far the integrated orbit leaves the series, and from when on."""
     times = orbit.times
     there = torus.Q(times)
@@ -142,7 +143,7 @@ def identical_claim(torus: QTorus, orbit: Orbit) -> Claim:
 
 
 def exponential_claim(
-    exact: RefinedTorus, floor_of: Callable[[RefinedTorus], Any] = spectrum_floor
+    exact: Torus[Newton], floor_of: Callable[[Torus[Newton]], Any] = spectrum_floor
 ) -> Claim:
     """A straight line beyond the seeds."""
     spectrum = np.asarray(exact.average_spectrum(), dtype=float)
@@ -155,7 +156,7 @@ def exponential_claim(
     return Claim("4", text, "", f"{fit!r} (exact torus)", verdict)
 
 
-def _caption_claim(line: PrintedLine, torus: QTorus) -> Claim:
+def _caption_claim(line: PrintedLine, torus: Torus[FromSeries]) -> Claim:
     """The line of the caption, which has another energy and another power of kappa."""
     (chain,) = line.chains
     H = float(torus.energy())
@@ -202,7 +203,7 @@ def falling_sums_claim(sums: tuple[Floats, Floats], order: int) -> Claim:
     return Claim("4", text, "", ours, judged(upper and lower, upper or lower))
 
 
-def root_finding_claim(exact: RefinedTorus) -> Claim:
+def root_finding_claim(exact: Torus[Newton]) -> Claim:
     """An exact torus of four frequencies, by the method that is said not to find it."""
     residual = exact.residual()
     found = residual < EXACT_RESIDUAL

@@ -39,7 +39,8 @@ from symfpu.paper.starts import (
     profile_panel,
 )
 from symfpu.paper.table import rounds_to
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 TIME, LOOKS = 1e6, 600  # the paper's
@@ -115,12 +116,12 @@ def _growth_panel(times: Floats, shares: Floats, groups: list[tuple[int, ...]]) 
     return Panel("fig3a", title, *labels, tuple(curves), axes, log_x=True)
 
 
-def distance_claim(torus: QTorus, Q: Floats) -> Claim:
+def distance_claim(torus: Torus[FromSeries], Q: Floats) -> Claim:
     """Between the initial conditions, as a part of the largest coordinate.
 
     Q : of the FPU-trajectory.
     """
-    mu = torus.series.chain.mu
+    mu = torus.origin.series.chain.mu
     there = np.asarray(torus.Q(0.0), dtype=float)
     off = float(np.abs(there - Q).max() / np.abs(Q).max())
     ours = f"mu = {mu:.5f}; they begin {off:.2g} = {off / mu:.2g} mu "

@@ -23,7 +23,8 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 TIME = 1e5  # our choice; slow beats of the lowest modes average out by then
@@ -200,7 +201,7 @@ def branches_claim(spectrum: Floats) -> Claim:
     return Claim("6.2, Fig. 5b", text, "", ours, judged(falling and straight, falling))
 
 
-def paper_scheme_claim(label: str, torus: QTorus, progress: Progress) -> Claim:
+def paper_scheme_claim(label: str, torus: Torus[FromSeries], progress: Progress) -> Claim:
     """How far down the paper's own integrator follows the series."""
     orbit = integrated_orbit(
         f"{label} {PAPER_SCHEME}",
@@ -214,7 +215,7 @@ def paper_scheme_claim(label: str, torus: QTorus, progress: Progress) -> Claim:
     return scheme_level_claim(label, torus, normalised_averages(orbit)[-1])
 
 
-def scheme_level_claim(label: str, torus: QTorus, integrated: Floats) -> Claim:
+def scheme_level_claim(label: str, torus: Torus[FromSeries], integrated: Floats) -> Claim:
     """spectrum of the integration, over the energy."""
     series = np.asarray(torus.average_spectrum() / torus.energy(), dtype=float)
     printed = PRINTED_LEVELS[label]

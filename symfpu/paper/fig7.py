@@ -40,7 +40,8 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 TIME, LOOKS = 1e5, 2001  # of the instantaneous energies, our choice
@@ -123,7 +124,7 @@ def _claims(
     )
 
 
-def return_claim(row: PrintedTorus, torus: QTorus) -> Claim:
+def return_claim(row: PrintedTorus, torus: Torus[FromSeries]) -> Claim:
     """Back at its start after a period, by integration."""
     digits = period_digits(row, torus)
     ours = f"to {digits:.1f} digits of the largest coordinate, "

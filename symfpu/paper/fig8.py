@@ -32,7 +32,8 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 Shares = dict[str, tuple[Floats, Floats]]  # times and E_q / E, by route
@@ -77,7 +78,7 @@ def figure8(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     return PaperFigure("fig8", title, panels, claims)
 
 
-def _shares(row: PrintedTorus, torus: QTorus, progress: Progress) -> Shares:
+def _shares(row: PrintedTorus, torus: Torus[FromSeries], progress: Progress) -> Shares:
     """Instantaneous energies by both integrations and by the series."""
     moments = np.linspace(0.0, TIME, LOOKS)
     mode_space = integrated_orbit(
@@ -112,7 +113,7 @@ def _shares(row: PrintedTorus, torus: QTorus, progress: Progress) -> Shares:
 
 
 def _averaged_orbits(
-    row: PrintedTorus, torus: QTorus, progress: Progress
+    row: PrintedTorus, torus: Torus[FromSeries], progress: Progress
 ) -> dict[str, Orbit]:
     """Orbits of the series and of the FPU-trajectory, long enough for their averages."""
     chain, T, looks = row.chain, AVERAGING_TIME, AVERAGING_LOOKS

@@ -24,12 +24,12 @@ from symfpu.dynamics.starts import packet_state
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.numbers.typed import Number
 from symfpu.paper.claims import Claim, judged
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.tori import refine
 from symfpu.saved.results import load
 from symfpu.spectral.analysis import frequency_analysis
 from symfpu.spectral.near import torus_near
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.torus import Torus, comes_from
 
 Floats = NDArray[np.float64]
 
@@ -81,20 +81,20 @@ def approach(
     return Approach(*zip(*found, strict=True))
 
 
-def distance_from(torus: QuasiPeriodic, start: Floats) -> float:
+def distance_from(torus: Torus, start: Floats) -> float:
     """How far the torus is from coordinates at t = 0, relative to the largest of them."""
     return float(np.abs(torus.Q(0.0) - start).max() / np.abs(start).max())
 
 
-def five_angles() -> RefinedTorus:
+def five_angles() -> Torus[Newton]:
     """The torus of five angles whose seeds start where the trajectory of H = 0.014915 does."""
     with as_file(files("symfpu.paper") / "data" / "fig9-torus.symfpu") as path:
         found = load(path).result
-    assert isinstance(found, RefinedTorus)
+    assert comes_from(found, Newton)
     return found
 
 
-def _at_rest(torus: FourierTorus) -> FourierTorus:
+def _at_rest(torus: Torus) -> Torus:
     """With phases 0 and pi, those of an orbit that starts at rest."""
     phases = {q: math.pi * round(float(x) / math.pi) for q, x in torus.phases.items()}
     return replace(torus, phases=phases)

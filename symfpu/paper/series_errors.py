@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import exact
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, amplitude_history
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -114,7 +114,7 @@ class _Comparison:
     Rows are harmonics, one of each pair +-nu.
     """
 
-    def __init__(self, series: LindstedtSeries, torus: QuasiPeriodic) -> None:
+    def __init__(self, series: LindstedtSeries, torus: Torus) -> None:
         self.series = series
         self.linear = series.chain.frequencies()
         known = map(tuple, _positive(torus.harmonics).tolist())
@@ -155,7 +155,7 @@ def _positive(harmonics: Ints) -> Ints:
 
 
 def series_errors(
-    series: LindstedtSeries, torus: RefinedTorus, tell: Progress = unheard
+    series: LindstedtSeries, torus: Torus[Newton], tell: Progress = unheard
 ) -> SeriesErrors:
     """Errors of a series against the exact torus of its frequencies, by order from 1 on."""
     history = amplitude_history(series)
@@ -233,7 +233,7 @@ class ScalingStudy:
 
 
 def scaling_study(
-    torus: RefinedTorus, label: str, progress: Progress = unheard
+    torus: Torus[Newton], label: str, progress: Progress = unheard
 ) -> ScalingStudy:
     """The errors of the orders SCALED_ORDERS at an exact torus and at scaled ones.
 
@@ -255,7 +255,7 @@ def scaling_study(
     return ScalingStudy(label, scales, given, solved)
 
 
-def _scaled(torus: RefinedTorus, scale: float) -> RefinedTorus:
+def _scaled(torus: Torus[Newton], scale: float) -> Torus[Newton]:
     """The exact torus with scaled amplitudes.
 
     Its guess has c[nu] scaled by scale^|nu| and, at nu = 0, by its square.
@@ -269,7 +269,7 @@ def _scaled(torus: RefinedTorus, scale: float) -> RefinedTorus:
     for rounded, chosen in zip(linear, torus.frequencies, strict=True):
         seed_rate = exact(repr(float(rounded)), "frequency")
         rates.append(seed_rate + (chosen - seed_rate) * square)
-    guess = FourierTorus(
+    guess = Torus(
         torus.chain, torus.seeds, tuple(rates), torus.harmonics, cosines, torus.phases
     )
     amplitudes = {q: a * scale for q, a in torus.amplitudes.items()}

@@ -22,8 +22,8 @@ from symfpu.localization.floors import spectrum_floor
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS, PrintedTorus
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ def printed_row(label: str) -> PrintedTorus:
     return next(row for row in (TWO_TORUS, *APPENDIX_F) if row.label == label)
 
 
-def printed_torus(row: PrintedTorus) -> QTorus:
+def printed_torus(row: PrintedTorus) -> Torus[FromSeries]:
     """The truncated series of the printed frequencies and order.
 
     Its amplitudes are of the frequency order that gives the printed ones.
@@ -111,7 +111,7 @@ def integrated_orbit(
     )
 
 
-def period_digits(row: PrintedTorus, torus: QTorus) -> float:
+def period_digits(row: PrintedTorus, torus: Torus[FromSeries]) -> float:
     """To how many digits of its largest coordinate an orbit is back at its start.
 
     After 2 pi/omega, omega as printed.
@@ -162,7 +162,7 @@ def profile_panel(
     return Panel(name, title, *labels, (*curves, *laws), axes)
 
 
-def normalised_floor(solution: QuasiPeriodic) -> Floats:
+def normalised_floor(solution: Torus) -> Floats:
     """The energies below which a mode of a torus is rounding, over its energy; shape (N-1,)."""
     floor = spectrum_floor(solution)
     return np.asarray(floor / float(solution.energy()))

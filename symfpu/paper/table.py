@@ -6,7 +6,7 @@ They follow from the printed frequencies.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from decimal import Decimal
 
 import numpy as np
@@ -16,7 +16,8 @@ from symfpu.paper.printed import APPENDIX_F, TWO_TORUS, PrintedTorus
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, amplitude_history, solve_amplitudes
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 # agreement, in digits of the worst amplitude, from which a printed row counts as met
 MET_DIGITS = 8.5
@@ -43,7 +44,7 @@ class AmplitudeRow:
     history: AmplitudeHistory = field(repr=False)
     digits: dict[int, float]
     met: tuple[int, ...]
-    torus: QTorus
+    torus: Torus[FromSeries]
     energies: dict[str, float]
     energy_matches: tuple[str, ...]
     energy_orders: dict[str, tuple[int, ...]]
@@ -144,7 +145,7 @@ def _met_orders(
     return tuple(met)
 
 
-def energies(torus: QTorus) -> dict[str, float]:
+def energies(torus: Torus[FromSeries]) -> dict[str, float]:
     """What a paper may mean by "energy", by name."""
     return {
         "H(0)": float(torus.energy()),
@@ -153,10 +154,10 @@ def energies(torus: QTorus) -> dict[str, float]:
     }
 
 
-def _energy_orders(torus: QTorus, printed: str) -> dict[str, tuple[int, ...]]:
+def _energy_orders(torus: Torus[FromSeries], printed: str) -> dict[str, tuple[int, ...]]:
     found: dict[str, tuple[int, ...]] = {}
-    for order in range(1, torus.series.order + 1):
-        cut = replace(torus, order=order)
+    for order in range(1, torus.origin.series.order + 1):
+        cut = torus.origin.cut_at(order).torus(torus.phases)
         for name, value in energies(cut).items():
             if rounds_to(value, printed):
                 found[name] = (*found.get(name, ()), order)

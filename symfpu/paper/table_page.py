@@ -19,8 +19,8 @@ from symfpu.paper.corrected_page import (
 from symfpu.paper.series_errors import ScalingStudy, scaling_study
 from symfpu.paper.table import AmplitudeRow, amplitude_table
 from symfpu.paper.table_claims import table_claims
+from symfpu.reports.solution import solution_record
 from symfpu.reports.tables import markdown_table
-from symfpu.reports.torus import torus_record
 
 SCALED_ROWS = ("Fig. 1", "Fig. 7")  # whose errors are followed to smaller mu
 SHORT_HISTORY = 30  # orders; of a longer one some are shown
@@ -89,7 +89,7 @@ def row_record(row: AmplitudeRow) -> dict[str, Any]:
         name: list(orders) for name, orders in row.energy_orders.items()
     }
     record["verdict"] = row.verdict
-    record["torus"] = torus_record(row.torus)
+    record["torus"] = solution_record(row.torus)
     return record
 
 

@@ -97,7 +97,7 @@ def series_table(data: Fig1Study) -> str:
         residuals = study.assessment.residuals
         row += [f"{residuals.min():.1e}", f"{residuals[-1]:.1e}", f"{study.resummed:.1e}"]
         rows.append(row)
-    last = next(iter(data.series.values())).torus.order
+    last = next(iter(data.series.values())).torus.origin.order
     head += ["least residual", f"order {last}", f"order {last}, Pade"]
     return markdown_table(head, rows)
 

@@ -29,12 +29,13 @@ from symfpu.paper.convergence_fig1 import (
     resonant_pole,
 )
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, TWO_TORUS
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.from_series import FromSeries
 from symfpu.tori.resummation import resum_by_order
-from symfpu.tori.torus import QTorus
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment, assess
 
 Floats = NDArray[np.float64]
@@ -96,7 +97,7 @@ class SeriesStudy:
     the torus of Pade sums.
     """
 
-    torus: QTorus = field(repr=False)
+    torus: Torus[FromSeries] = field(repr=False)
     coefficients: dict[int, float]
     ratios: dict[int, float]
     pole: float
@@ -173,14 +174,14 @@ def series_study(chain: Chain, order: int = TWO_TORUS.order) -> SeriesStudy:
     )
 
 
-def refined_two_torus(chain: Chain, second: str) -> RefinedTorus:
+def refined_two_torus(chain: Chain, second: str) -> Torus[Newton]:
     """The torus of seeds 1, 2 with the printed omega_1 and another omega_2, by Newton's method."""
     frequencies = (TWO_TORUS.frequencies[0], second)
     series = lindstedt(chain, TWO_TORUS.seeds, frequencies, GUESS_ORDER)
     return refine(solve_amplitudes(series))
 
 
-def resonant_coefficient(torus: RefinedTorus) -> float:
+def resonant_coefficient(torus: Torus[Newton]) -> float:
     """The coefficient of the harmonic (5, -4) in mode 3."""
     resonant = (torus.harmonics == RESONANT_HARMONIC).all(axis=1)
     (row,) = np.flatnonzero(resonant)

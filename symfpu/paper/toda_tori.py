@@ -22,10 +22,11 @@ from symfpu.integrable.invariants import toda_gaps
 from symfpu.integrable.torus import toda_torus
 from symfpu.paper.printed import TWO_TORUS, PrintedTorus
 from symfpu.paper.starts import AMPLITUDE_ORDERS, printed_row
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 
@@ -56,13 +57,13 @@ class TorusStudy:
     """
 
     label: str
-    alpha: RefinedTorus = field(repr=False)
-    same_frequencies: RefinedTorus = field(repr=False)
-    same_amplitudes: RefinedTorus = field(repr=False)
+    alpha: Torus[Newton] = field(repr=False)
+    same_frequencies: Torus[Newton] = field(repr=False)
+    same_amplitudes: Torus[Newton] = field(repr=False)
     gaps: dict[str, Floats] = field(repr=False)
     exact_energy: float
 
-    def tori(self) -> dict[str, RefinedTorus]:
+    def tori(self) -> dict[str, Torus[Newton]]:
         """By name."""
         return {
             "alpha": self.alpha,
@@ -115,21 +116,21 @@ def torus_study(row: PrintedTorus) -> TorusStudy:
     )
 
 
-def _refined(row: PrintedTorus, chain: Chain, tolerance: float) -> RefinedTorus:
+def _refined(row: PrintedTorus, chain: Chain, tolerance: float) -> Torus[Newton]:
     order, frequency_order = GUESS_ORDERS[row.label]
     series = lindstedt(chain, row.seeds, row.frequencies, order)
     guess = solve_amplitudes(series, frequency_order=frequency_order)
     return refine(guess, tolerance=tolerance)
 
 
-def gaps_over(torus: RefinedTorus) -> Floats:
+def gaps_over(torus: Torus[Newton]) -> Floats:
     """Toda gaps (LOOKS, N-1) of states along an orbit that fills the torus."""
     times = LOOK_STEP * np.arange(LOOKS)
     Q, P = torus.Q(times), torus.P(times)
     return np.asarray(toda_gaps(torus.chain, Q, P), dtype=float)
 
 
-def gaps_along(torus: RefinedTorus) -> tuple[Floats, Floats]:
+def gaps_along(torus: Torus[Newton]) -> tuple[Floats, Floats]:
     """The first angle from 0 to 2 pi, the others 0, and the gaps (ANGLES, N-1) along it."""
     angles = np.linspace(0, 2 * np.pi, ANGLES)
     gaps = []
@@ -140,7 +141,7 @@ def gaps_along(torus: RefinedTorus) -> tuple[Floats, Floats]:
     return angles, np.array(gaps, dtype=float)
 
 
-def gap_energies(torus: RefinedTorus, gaps: Floats) -> Floats:
+def gap_energies(torus: Torus[Newton], gaps: Floats) -> Floats:
     """Energy of small oscillations with these gaps, N gap^2 / (4 a^2), in units of H."""
     a = float(torus.chain.potential.coefficient(3))
     return np.asarray(torus.chain.N * gaps**2 / (4 * a**2) / float(torus.energy()))

@@ -26,7 +26,7 @@ from symfpu.plots.style import (
     rounding_below,
     subject,
 )
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 PERIODS = 6  # of the slowest seed, that are shown where nothing is said
 SAMPLES = 1200  # times in them
@@ -212,7 +212,7 @@ def _motion(
 ) -> Motion:
     if isinstance(result, Orbit):
         return _motion_of_orbit(result, times)
-    if not isinstance(result, QuasiPeriodic):
+    if not isinstance(result, Torus):
         given = type(result).__name__
         raise InputError("result", given, "a torus, a breather or an orbit", ADVICE)
     if times is None:

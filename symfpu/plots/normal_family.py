@@ -13,13 +13,13 @@ from symfpu.families.normal_family import NormalFamily
 from symfpu.numbers.counted import counted
 from symfpu.plots.legends import legend
 from symfpu.plots.style import QUIET, Axes, axes_for, look, require, subject
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.torus import Torus
 
 
 class _Row(NamedTuple):
     """One torus, and its normal frequencies by mode."""
 
-    torus: QuasiPeriodic
+    torus: Torus
     sigma: Mapping[int, complex]
 
     @property
@@ -77,7 +77,7 @@ def _rows(result: Any) -> tuple[list[_Row], tuple[NormalEvent, ...]]:
 
 def _axis(rows: list[_Row]) -> tuple[int, Any]:
     """The seed whose amplitude changes most, and that amplitude along the way."""
-    known = [amplitudes_of(row.torus) for row in rows]
+    known = [row.torus.amplitudes for row in rows]
     seed = max(known[0], key=lambda q: abs(float(known[-1][q]) - float(known[0][q])))
     return seed, np.array([float(row[seed]) for row in known])
 

@@ -24,10 +24,11 @@ from symfpu.plots.style import (
     subject,
     whole_numbers,
 )
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries, require_series_torus
+from symfpu.tori.torus import Torus, comes_from
 from symfpu.tori.verdict import Assessment
 
 DOUBLES_FLOOR = 16 * EPS  # of a relative residual in doubles
@@ -37,7 +38,7 @@ LEAST_DECADES = 20.0  # below the largest coefficient, down to which colours go 
 def coefficients(result: Any, ax: Axes | None = None, *, mode: int | None = None) -> Axes:
     """The largest coefficient of every order and length of the harmonic: where a series loses.
 
-    result : a torus solved from a series (QTorus). ax : axes of matplotlib; default new ones.
+    result : a torus solved from a series. ax : axes of matplotlib; default new ones.
     mode : q of the coordinate; default the largest of all modes.
 
     Colours are log10 of Omega_q |c|, c the sum of the monomials of one harmonic nu in
@@ -52,7 +53,7 @@ def coefficients(result: Any, ax: Axes | None = None, *, mode: int | None = None
     >>> coefficients(torus, Figure().add_subplot()).get_xlabel()
     'order $k$'
     """
-    torus = require(result, QTorus, "a QTorus, which has its series", "solve_amplitudes")
+    torus = require_series_torus(result, "result")
     column = None if mode is None else _column(torus, mode)
     table = _largest(torus, column)
     if not np.isfinite(table).any():
@@ -88,21 +89,21 @@ def coefficients(result: Any, ax: Axes | None = None, *, mode: int | None = None
     return axes
 
 
-def _column(torus: QTorus, mode: int) -> int:
+def _column(torus: Torus[FromSeries], mode: int) -> int:
     q = integer(mode, "mode", 1)
     if q >= torus.chain.N:
         raise InputError("mode", mode, f"1 .. {torus.chain.N - 1}", "choose one of them")
     return q - 1
 
 
-def _largest(torus: QTorus, column: int | None) -> Floats:
+def _largest(torus: Torus[FromSeries], column: int | None) -> Floats:
     """log10 of the largest coefficients by |nu| and order, (lengths, orders), nan where none."""
     linear = torus.chain.frequencies()
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
-    longest = torus.series.degree(torus.order)
-    table = np.zeros((longest + 1, torus.order + 1))
-    for k in range(torus.order + 1):
-        nu, values = torus.series.harmonic_terms(amplitudes, k)
+    longest = torus.origin.series.degree(torus.origin.order)
+    table = np.zeros((longest + 1, torus.origin.order + 1))
+    for k in range(torus.origin.order + 1):
+        nu, values = torus.origin.series.harmonic_terms(amplitudes, k)
         sizes = np.abs(values).astype(float) * linear
         row = sizes.max(axis=1) if column is None else sizes[:, column]
         lengths = np.abs(nu).sum(axis=1)
@@ -183,13 +184,13 @@ def _of_coefficient(coefficient: float, rounding: float) -> str:
 
 
 def _divisors(result: Any) -> list[_Divisor]:
-    if isinstance(result, RefinedTorus):
-        near = result.near_resonances
+    if comes_from(result, Newton):
+        near = result.origin.near_resonances
         rounding = EPS * max(abs(float(A)) for A in result.amplitudes.values())
         notes = [_of_coefficient(float(r.coefficient), rounding) for r in near]
         pairs = zip(near, notes, strict=True)
         return [_Divisor(abs(r.divisor), r.mode, r.harmonic, note) for r, note in pairs]
-    series = result.series if isinstance(result, QTorus) else result
+    series = result.origin.series if comes_from(result, FromSeries) else result
     allowed = "a series, or a torus of a series or of Newton's method"
     checked = require(series, LindstedtSeries, allowed, "pass what lindstedt gave")
     smallest = checked.smallest_divisors
@@ -259,10 +260,10 @@ def _history(
     """Amplitudes and their differences by order, orders without a root, and the seeds."""
     if isinstance(result, Assessment):
         return result.amplitudes, result.differences, [], tuple(result.sums)
-    if isinstance(result, QTorus):
-        orders = frequency_orders(result.series)
-        result = AmplitudeHistory(result.seeds, orders, result.history, {})
-    allowed = "an AmplitudeHistory, an Assessment or a QTorus"
+    if comes_from(result, FromSeries):
+        orders = frequency_orders(result.origin.series)
+        result = AmplitudeHistory(result.seeds, orders, result.origin.history, {})
+    allowed = "an AmplitudeHistory, an Assessment or a torus of a series"
     advice = "pass what amplitude_history gave"
     history = require(result, AmplitudeHistory, allowed, advice)
     return (

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symfpu.breathers.balance import PeriodicOrbit
 from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.propagation import excitation_sequence
@@ -30,9 +29,8 @@ from symfpu.plots.style import (
     subject,
     whole_numbers,
 )
-from symfpu.refinement.refined_torus import RefinedTorus
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 MOST_STRIPES = 40  # of groups that are shaded where nothing is said
 NAME_WIDTH = 0.3  # inches of the name of a group above the picture
@@ -41,12 +39,6 @@ BELOW, ABOVE = (
     5.0,
 )  # factors from the least and largest energies to the ends of the axis
 WIDE_CHAIN = 64  # bonds from which markers are small
-KINDS: tuple[tuple[type, str], ...] = (
-    (QTorus, "series"),
-    (RefinedTorus, "Newton's method"),
-    (PeriodicOrbit, "breather"),
-    (Orbit, "orbit"),
-)
 
 
 class Spectrum(NamedTuple):
@@ -142,7 +134,7 @@ def _fit_height(axes: Axes, shown: Sequence[Spectrum]) -> None:
 
 
 def _spectrum_of(result: object) -> Spectrum:
-    if isinstance(result, QuasiPeriodic):
+    if isinstance(result, Torus):
         return spectrum_of_torus(result)
     if isinstance(result, Orbit):
         return _spectrum_of_orbit(result)
@@ -151,7 +143,7 @@ def _spectrum_of(result: object) -> Spectrum:
     raise InputError("results", type(result).__name__, allowed, advice)
 
 
-def spectrum_of_torus(torus: QuasiPeriodic) -> Spectrum:
+def spectrum_of_torus(torus: Torus) -> Spectrum:
     """With what of it is rounding: of waves of a ring EPS^2 times the sum of all energies."""
     energies = np.asarray(torus.average_spectrum(), dtype=float)
     chain = torus.chain
@@ -198,12 +190,12 @@ def _names(results: Sequence[Any], labels: Sequence[str] | None) -> list[str]:
 
 
 def _name(result: Any) -> str:
-    words = next((words for kind, words in KINDS if isinstance(result, kind)), "torus")
-    if isinstance(result, QTorus):
-        return f"{words}, order {result.order}"
     if isinstance(result, Orbit):
-        return f"{words}, $t$ = {result.times[-1]:.3g}"
-    return words
+        return f"orbit, $t$ = {result.times[-1]:.3g}"
+    origin = result.origin
+    return (
+        f"series, order {origin.order}" if isinstance(origin, FromSeries) else origin.name
+    )
 
 
 def _energy(result: Any) -> float:

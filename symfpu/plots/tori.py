@@ -12,15 +12,8 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.typed import integer
 from symfpu.plots.legends import legend
-from symfpu.plots.style import (
-    Axes,
-    Floats,
-    axes_for,
-    chosen_modes,
-    look,
-    of_solution,
-)
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.plots.style import Axes, Floats, axes_for, chosen_modes, look, of_solution
+from symfpu.tori.torus import Torus
 
 POINTS = 2000  # of a section
 ORBITS = 48  # that rule a torus of two angles
@@ -82,13 +75,13 @@ def section(
     return axes
 
 
-def _solution(result: Any) -> QuasiPeriodic:
-    if isinstance(result, QuasiPeriodic):
+def _solution(result: Any) -> Torus:
+    if isinstance(result, Torus):
         return result
     raise InputError("result", type(result).__name__, SOLUTION, ADVICE)
 
 
-def _phase_space(found: QuasiPeriodic, times: Any) -> tuple[Floats, Floats]:
+def _phase_space(found: Torus, times: Any) -> tuple[Floats, Floats]:
     """Q and P at times, (T, N-1) each, in doubles; of a ring their real parts."""
     doubles = found.in_doubles()
     return doubles.Q(times).real, doubles.P(times).real
@@ -170,7 +163,7 @@ def _few_ticks() -> Any:
     return MaxNLocator(3)
 
 
-def _modes(found: QuasiPeriodic, modes: Sequence[int] | None) -> list[int]:
+def _modes(found: Torus, modes: Sequence[int] | None) -> list[int]:
     """Two modes or three; InputError for other numbers, and for a chain of one mode."""
     numbers = found.chain.mode_numbers
     if len(set(map(abs, numbers))) < 2:  # q and -q of a ring have one real part
@@ -190,7 +183,7 @@ def _modes(found: QuasiPeriodic, modes: Sequence[int] | None) -> list[int]:
     return [first, numbers[int(np.argmax(energies))]]
 
 
-def _surface(found: QuasiPeriodic) -> tuple[Floats, Floats]:
+def _surface(found: Torus) -> tuple[Floats, Floats]:
     """Q and P on the torus, (orbits, points, N-1).
 
     Of two angles orbits of one turn of the first, from equally spaced phases of the second.
@@ -211,7 +204,7 @@ def _surface(found: QuasiPeriodic) -> tuple[Floats, Floats]:
     return np.array(Q), np.array(P)
 
 
-def _one_orbit(found: QuasiPeriodic, times: Floats) -> tuple[Floats, Floats]:
+def _one_orbit(found: Torus, times: Floats) -> tuple[Floats, Floats]:
     Q, P = _phase_space(found, times)
     return Q[None], P[None]
 

@@ -44,7 +44,7 @@ from symfpu.series.series import LindstedtSeries
 from symfpu.spectral.analysis import FrequencyAnalysis
 from symfpu.spectral.mapping import FrequencyMap
 from symfpu.tori.amplitudes import AmplitudeHistory
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment
 
 SIZE, DPI = (4.2, 2.9), 75  # of the picture beside an answer
@@ -295,7 +295,7 @@ def _energy_series(orbit: Orbit, ax: Axes | None = None) -> Axes:
 _energy_series.__name__ = "time_series"
 
 USUAL = (
-    Usual(QuasiPeriodic, spectrum, _torus_verdict, _torus_rows),
+    Usual(Torus, spectrum, _torus_verdict, _torus_rows),
     Usual(
         LindstedtSeries,
         small_divisors,

@@ -9,10 +9,10 @@ harmonics of a box a quarter larger says which are missing.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import mpmath
 import numpy as np
@@ -24,11 +24,7 @@ from symfpu.chain.tension_terms import has_terms, terms
 from symfpu.errors import InputError
 from symfpu.files.locking import one_run
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.numbers.arithmetic import (
-    GUARD_DIGITS,
-    from_integers,
-    mpf,
-)
+from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers, mpf, with_digits
 from symfpu.numbers.typed import integer
 from symfpu.refinement.guesses import frequency_shifts
 from symfpu.refinement.harmonics import within_reach
@@ -48,7 +44,7 @@ from symfpu.refinement.lattice import Floats, Ints, canonical_signs, places_of
 from symfpu.refinement.newton import Correction
 from symfpu.refinement.prescribed import Prescribed
 from symfpu.refinement.refinement_file import Keep, Reached, RefinementFile, no_file
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, show
+from symfpu.tori.torus import Origin, Torus
 
 MOST_DIGITS = 1000
 MOST_HARMONICS = 150_000
@@ -65,16 +61,13 @@ SAMPLES = 512  # times at which the acceleration is looked at
 NO_TERMS = "refine it in doubles, or take the polynomial of its first coefficients"
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class PreciseTorus(FourierTorus):
-    """A torus with many digits, of any number of angles; dimensionless, phases in radians.
+@dataclass(frozen=True, eq=False, repr=False)
+class IterativeRefinement(Origin):
+    """Where a torus with many digits comes from: iterative refinement (`refine` with `digits`).
 
-    Made by `refine` with `digits`. Ours: the paper has series alone.
+    Not in the paper, which has series alone. `digits` of the torus are those of its largest
+    coefficient.
 
-    chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
-    harmonics : the nu, shape (H, s). cosines : c_q[nu] as mpf, shape (H, N-1), on a ring (H, 1) and
-        `travels`. phases : by seed.
-    digits : of the largest coefficient. warnings : reasons to doubt it.
     bound : above |Q'' - force| of every mode at all angles, relative to the largest acceleration
         at 512 times: the sum of the sizes of the Fourier coefficients of the residual, with all
         that its computation rounds or leaves out.
@@ -86,27 +79,21 @@ class PreciseTorus(FourierTorus):
     >>> from symfpu import Chain, refine, torus_at_amplitudes
     >>> guess = torus_at_amplitudes(Chain(N=4, beta="0.5"), {1: "0.1", 2: "0.1"}, order=3)
     >>> refine(guess, digits=30)
-    PreciseTorus(N=4, beta=0.5, omega_1=0.76711..., omega_2=1.41631..., A_1=0.0999...,
-    A_2=0.1000..., 30 digits, ... harmonics, residual below ..., error about ...)
+    Torus(N=4, beta=0.5, omega_1=0.76711..., omega_2=1.41631..., A_1=0.0999...,
+    A_2=0.1000..., 30 digits, H=..., ... harmonics, residual below ..., error about ...)
     """
 
-    bound: Any = field(default=mpmath.inf)
-    error: Any = field(default=mpmath.inf)
-    sweeps: int = 0
+    name: ClassVar[str] = "iterative refinement"
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        show(self, "bound", "error")
+    bound: Any
+    error: Any
+    sweeps: int
 
-    def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        by_seed = zip(self.seeds, self.frequencies, strict=True)
-        rates = ", ".join(f"omega_{q}={float(w):.16g}" for q, w in by_seed)
-        sizes = ", ".join(f"A_{q}={float(a):.16g}.." for q, a in self.amplitudes.items())
-        which = f"{chain}, {rates}, {sizes}, {self.digits} digits"
-        bound, error = mpmath.nstr(self.bound, 2), mpmath.nstr(self.error, 2)
-        quality = f"residual below {bound}, error about {error}"
-        return f"PreciseTorus({which}, {len(self.harmonics)} harmonics, {quality})"
+    def quality(self, torus: Torus) -> str:
+        return f"residual below {mpmath.nstr(self.bound, 2)}"
+
+    def facts(self) -> tuple[str, ...]:
+        return (f"error about {mpmath.nstr(self.error, 2)}",)
 
 
 class Guess(NamedTuple):
@@ -139,7 +126,7 @@ def require_digits(chain: Chain, digits: int, argument: str) -> None:
         raise InputError(argument, f"one of {chain!r}", allowed, NO_TERMS)
 
 
-def guess_of(torus: QuasiPeriodic, prescribed: Prescribed) -> Guess:
+def guess_of(torus: Torus, prescribed: Prescribed) -> Guess:
     """A torus in doubles or in digits as where refinement begins."""
     rows = {}
     for nu, row in zip(torus.harmonics.tolist(), torus.cosines, strict=True):
@@ -173,7 +160,7 @@ def _rational(omega: Integers, bits: int) -> tuple[Fraction, ...]:
 
 def torus_to_digits(
     guess: Guess, digits: int, path: Path | None, tell: Progress
-) -> PreciseTorus:
+) -> Torus[IterativeRefinement]:
     """The torus near the guess; a run with a file goes on from what that holds.
 
     Raises Failure, and InputError, also for a file of another run or in use.
@@ -190,7 +177,7 @@ def torus_to_digits(
 
 def precise_torus(
     guess: Guess, digits: int, tell: Progress, keep: Keep = no_file
-) -> PreciseTorus:
+) -> Torus[IterativeRefinement]:
     """The torus near the guess with so many digits; raises Failure, and InputError for too many.
 
     keep : called with what is reached after every step.
@@ -331,7 +318,7 @@ class TorusProblem(TruncatedProblem):
             return np.zeros(len(self.start.seeds), dtype=object)
         every = np.ones(len(self.harmonics), dtype=bool)
         fields = self._fields(every, self.numbers(), self.start.phases)
-        torus = FourierTorus(**fields, digits=mpmath.mp.dps)
+        torus = Torus(**fields, digits=mpmath.mp.dps)
         values = prescribed.values(torus)
         return np.array([self.force.fixed(mpmath.mpf(x)) for x in values], dtype=object)
 
@@ -443,7 +430,7 @@ class TorusProblem(TruncatedProblem):
         """The largest acceleration of a mode at some times: below the largest of all."""
         t = np.linspace(0, 100 * np.pi / float(min(self.exact_frequencies)), SAMPLES)
         every = np.ones(len(self.harmonics), dtype=bool)
-        doubles = FourierTorus(**self._fields(every, self.in_doubles(), {}))
+        doubles = Torus(**self._fields(every, self.in_doubles(), {}))
         forces = self.chain.accelerations(doubles.Q(t))
         return float(np.max(np.abs(forces)))
 
@@ -459,13 +446,12 @@ class TorusProblem(TruncatedProblem):
             "travels": self.chain.periodic,
         }
 
-    def result(self, left: Truncation) -> PreciseTorus:
+    def result(self, left: Truncation) -> Torus[IterativeRefinement]:
         """The torus, without harmonics that are zero in fixed point."""
         kept = self.coefficients.any(axis=1)
-        return PreciseTorus(
+        bound, error = with_digits((left.residual, left.error), self.digits)
+        return Torus(
             **self._fields(kept, self.numbers(), self.start.phases),
             digits=self.digits,
-            bound=left.residual,
-            error=left.error,
-            sweeps=self.steps,
+            origin=IterativeRefinement(bound, error, self.steps),
         )

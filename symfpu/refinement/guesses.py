@@ -14,7 +14,7 @@ from symfpu.numbers.arithmetic import mpf
 from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.lattice import Floats
-from symfpu.tori.quasiperiodic import QuasiPeriodic, require_solution
+from symfpu.tori.torus import Torus, require_solution
 
 LEAST_SIZE = Fraction(1, 10**40)  # of amplitudes and coefficients
 
@@ -60,7 +60,7 @@ def require_moderate(coefficients: Floats) -> None:
         raise InputError("torus", given, allowed, "take another guess")
 
 
-def shifts_of(torus: QuasiPeriodic) -> Floats:
+def shifts_of(torus: Torus) -> Floats:
     """omega - Omega of the seeds of a torus in long doubles; shape (s,)."""
     return frequency_shifts(torus.chain, torus.seeds, torus.frequencies)
 

@@ -19,7 +19,7 @@ from symfpu.refinement.lattice import Floats, Ints, Lattice
 from symfpu.refinement.linear_system import SMALLEST_BLOCK, block_size
 from symfpu.refinement.newton import KRYLOV
 from symfpu.tori.columns import CHUNK
-from symfpu.tori.quasiperiodic import GRID_POINTS, angles_at_once, points_of_each_angle
+from symfpu.tori.torus import GRID_POINTS, angles_at_once, points_of_each_angle
 
 DOUBLE = 8
 # tables in long doubles and doubles that the search keeps, and those of a step beside them

@@ -28,18 +28,9 @@ from symfpu.refinement.conditions import (
     Start,
     ratio_conditions,
 )
-from symfpu.refinement.guesses import (
-    frequency_shifts,
-    moderate_by_seed,
-    numbers_by_seed,
-)
+from symfpu.refinement.guesses import frequency_shifts, moderate_by_seed, numbers_by_seed
 from symfpu.series.arguments import frequencies_of
-from symfpu.tori.quasiperiodic import (
-    FourierTorus,
-    QuasiPeriodic,
-    amplitudes_of,
-    require_fixed_solution,
-)
+from symfpu.tori.torus import Torus, require_fixed_solution
 
 Exact = tuple[Fraction, ...]
 ByName = dict[str, Exact | None]
@@ -58,7 +49,7 @@ class Prescribed(ABC):
     def conditions(self) -> list[Condition]:
         """The conditions of Newton's method in doubles, one for each angle."""
 
-    def values(self, torus: FourierTorus) -> list[Any]:
+    def values(self, torus: Torus) -> list[Any]:
         """What the conditions leave on a torus with digits; 0 where their numbers are held."""
         return [0] * len(torus.seeds)
 
@@ -108,14 +99,14 @@ class AtEnergy(Prescribed):
         ratio = {q: float(x) for q, x in zip(self.seeds, self.ratio, strict=True)}
         return [energy, *ratio_conditions(self.seeds, ratio, energies=self.of_energies)]
 
-    def values(self, torus: FourierTorus) -> list[Any]:
+    def values(self, torus: Torus) -> list[Any]:
         energy = self._energy(torus) / mpf(self.energy) - 1
         first, *others = self._shares(torus)
         expected, *wanted = map(mpf, self.ratio)
         pairs = zip(others, wanted, strict=True)
         return [energy, *(own / first * (expected / ratio) - 1 for own, ratio in pairs)]
 
-    def _energy(self, torus: FourierTorus) -> Any:
+    def _energy(self, torus: Torus) -> Any:
         """At the angles zero, or of the waves of a ring averaged over the angles."""
         at_rest = replace(torus, phases={})
         if not self.harmonic:
@@ -124,7 +115,7 @@ class AtEnergy(Prescribed):
             return torus.average_spectrum().sum()
         return at_rest.harmonic_energies().sum()
 
-    def _shares(self, torus: FourierTorus) -> list[Any]:
+    def _shares(self, torus: Torus) -> list[Any]:
         """Of the seeds: their amplitudes, or their averaged energies."""
         if not self.of_energies:
             return list(torus.amplitudes.values())
@@ -154,7 +145,7 @@ class AtStart(Prescribed):
         values = enumerate(self.numbers)
         return [Start(place, long(x), phases, size) for place, x in values]
 
-    def values(self, torus: FourierTorus) -> list[Any]:
+    def values(self, torus: Torus) -> list[Any]:
         found = torus.Q(0.0)
         pairs = zip(torus.seeds, self.numbers, strict=True)
         return [(found[q - 1] - mpf(x)) / mpf(self._size) for q, x in pairs]
@@ -165,7 +156,7 @@ class AtStart(Prescribed):
 
 
 def prescribed_by(
-    torus: QuasiPeriodic,
+    torus: Torus,
     given: Mapping[str, Any],
     *,
     harmonic: bool,
@@ -216,7 +207,7 @@ def _require_no_energy(
 
 
 def _at_energy(
-    torus: QuasiPeriodic,
+    torus: Torus,
     energy: Number,
     *,
     harmonic: bool,
@@ -229,7 +220,7 @@ def _at_energy(
 
 
 def _ratio(
-    torus: QuasiPeriodic,
+    torus: Torus,
     amplitude_ratio: Mapping[int, Number] | None,
     energy_ratio: Mapping[int, Number] | None,
 ) -> dict[int, Fraction]:
@@ -244,11 +235,11 @@ def _ratio(
         return moderate_by_seed(
             "amplitude_ratio", amplitude_ratio, torus.seeds, signed=True
         )
-    found = amplitudes_of(torus)
+    found = torus.amplitudes
     return {q: exact(float(a), "amplitude") for q, a in found.items()}
 
 
-def _require_energies(torus: QuasiPeriodic) -> None:
+def _require_energies(torus: Torus) -> None:
     """InputError for opposite seeds of a ring, which have the same E_q."""
     opposite = [q for q in torus.seeds if -q in torus.seeds]
     if opposite:
@@ -257,7 +248,7 @@ def _require_energies(torus: QuasiPeriodic) -> None:
         raise InputError("energy_ratio", given, allowed, "give amplitude_ratio")
 
 
-def _at_start(torus: QuasiPeriodic, values: object) -> AtStart:
+def _at_start(torus: Torus, values: object) -> AtStart:
     """A number for each seed, not all of them 0."""
     require_fixed_solution(torus, "torus", "on a ring give amplitudes")
     allowed = f"a number for each of the seeds {torus.seeds}, by seed"

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
-from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
 from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.typed import integer, part
-from symfpu.refinement.conditions import Condition, seed_amplitudes
+from symfpu.refinement.conditions import Condition
 from symfpu.refinement.guesses import require_moderate, require_torus, shifts_of
 from symfpu.refinement.harmonics import MOST_HARMONICS, known_rows
 from symfpu.refinement.invariance import InvarianceEquation
@@ -23,8 +22,8 @@ from symfpu.refinement.resonances import NearResonance, near_resonances
 from symfpu.refinement.search import Search
 from symfpu.refinement.umklapp import driven_in_resonance
 from symfpu.tori.best_order import best_order
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Origin, Torus, comes_from
 
 # residual of the equations of motion, relative to the largest acceleration, that ends the search
 # for harmonics
@@ -39,64 +38,32 @@ DEGENERATE = (
 ENDED_EARLY = "Newton's method ended early"  # how the warning of such a torus begins
 
 
-@dataclass(frozen=True, eq=False)
-class RefinedTorus(QuasiPeriodic):
-    """A torus found by Newton's method, Q_q(t) = sum c_q[nu] cos(nu.(omega t + phi)).
+@dataclass(frozen=True, eq=False, repr=False)
+class Newton(Origin):
+    """Where a torus comes from: Newton's method on the invariance equation, in doubles (`refine`).
 
-    Of fixed ends, or of travelling waves of a ring.
+    Not in the paper, which has series alone. All is dimensionless.
 
-    Made by `refine` and its sisters; dimensionless, phases in radians. Ours: the paper has series
-    alone.
-
-    chain, seeds : the model and the s seeds. frequencies : omega of every seed, exact, shape (s,).
-    amplitudes : by seed, of cos(theta_q) in Q_q. phases : by seed.
-    harmonics : the nu, shape (H, s). cosines : c_q[nu] in doubles, shape (H, N-1), on a ring
-        (H, 1) and `travels`.
     steps : of Newton's method with the final harmonics.
     near_resonances : the smallest divisors (nu.omega)^2 - Omega_q^2, with the coefficients under
         them.
-    warnings : reasons to doubt it: a residual above the tolerance, or that Newton's method failed
-        when it had reached a residual of 1e-9 or less. digits : None, of doubles.
+
+    A torus of it doubts itself where its residual is above the tolerance, or where the method
+    failed when it had reached a residual of 1e-9 or less.
 
     >>> from symfpu import Chain, lindstedt, refine, solve_amplitudes
     >>> refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
-    RefinedTorus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4051586230417, H=0.0127984220834,
+    Torus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4051586230417, H=0.0127984220834,
     20 harmonics, residual ..., smallest divisor 0.024 at mode 2, harmonic (2), coefficient 0.031)
     """
 
-    chain: Chain
-    seeds: tuple[int, ...]
-    frequencies: tuple[Fraction, ...]
-    amplitudes: Mapping[int, float]
-    phases: Mapping[int, float]
-    harmonics: Ints = field(repr=False)
-    cosines: Floats = field(repr=False)
-    steps: tuple[NewtonStep, ...] = field(repr=False)
-    near_resonances: tuple[NearResonance, ...] = field(repr=False)
-    warnings: tuple[str, ...] = ()
-    digits: int | None = None
-    travels: bool = False
+    name: ClassVar[str] = "Newton's method"
 
-    @property
-    def verdict(self) -> str:
-        """'torus', or 'doubtful' with the reasons in `warnings`."""
-        return "doubtful" if self.warnings else "torus"
+    steps: tuple[NewtonStep, ...]
+    near_resonances: tuple[NearResonance, ...]
 
-    def __repr__(self) -> str:
-        chain = repr(self.chain)[6:-1]
-        amplitudes = ", ".join(f"A_{q}={a:.13g}" for q, a in self.amplitudes.items())
-        by_seed = zip(self.seeds, self.frequencies, strict=True)
-        rates = ", ".join(f"omega_{q}={float(w):.16g}" for q, w in by_seed)
-        energy = float(self.energy())
-        doubts = "".join(f"; {warning}" for warning in self.warnings)
-        nearest = (
-            f", smallest divisor {self.near_resonances[0]}" if self.near_resonances else ""
-        )
-        found = f"{len(self.harmonics)} harmonics, residual {self.residual():.2g}"
-        return (
-            f"RefinedTorus({chain}, {rates}, {amplitudes}, H={energy:.12g}, "
-            f"{found}{nearest}{doubts})"
-        )
+    def facts(self) -> tuple[str, ...]:
+        return tuple(f"smallest divisor {nearest}" for nearest in self.near_resonances[:1])
 
 
 class NoTorus(SymfpuError):
@@ -104,7 +71,7 @@ class NoTorus(SymfpuError):
 
     Where it fails with a residual of 1e-9 or less left, they give that torus with a warning.
 
-    iterate : the best one, a RefinedTorus, or where digits were asked for the
+    iterate : the best one, or where digits were asked for the
         torus from which they were tried; residual : what it leaves of the
         equations of motion, relative to the largest acceleration, dimensionless; reason : why it
         ended. Ours.
@@ -113,7 +80,7 @@ class NoTorus(SymfpuError):
     def __init__(
         self,
         reason: str,
-        iterate: QuasiPeriodic,
+        iterate: Torus,
         residual: float,
         advice: str = NEARER,
     ) -> None:
@@ -125,13 +92,13 @@ class NoTorus(SymfpuError):
 
 
 def refined_torus(
-    torus: QuasiPeriodic,
+    torus: Torus,
     conditions: Sequence[Condition],
     *,
     tolerance: float = TOLERANCE,
     most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
-) -> RefinedTorus:
+) -> Torus[Newton]:
     """The torus near a guess that meets as many conditions as it has angles.
 
     With as many harmonics as the tolerance needs.
@@ -150,7 +117,7 @@ def refined_torus(
         tell=progress or unheard,
     )
     solved = search(known_rows(*guess), shifts_of(torus))
-    found: RefinedTorus = solved.torus
+    found: Torus[Newton] = solved.torus
     if solved.failure:
         settled = found if solved.found.settled else None
         reason = _because(solved.failure, found)
@@ -162,10 +129,10 @@ def refined_torus(
 
 def _best_start(torus: Any) -> tuple[Any, str]:
     """The torus of a series cut where its residual is least, and what would help if that fails."""
-    if not isinstance(torus, QTorus):
+    if not comes_from(torus, FromSeries):
         return torus, NEARER
     best = best_order(torus)
-    cut = torus.cut_at(best)
+    cut = torus.origin.cut_at(best).torus(torus.phases)
     start = cut if best else torus  # the linear modes alone lead nowhere
     left = f"its series leaves {cut.residual():.2g} at its best order {best}"
     return start, f"{left}: follow the family of tori from less energy"
@@ -173,58 +140,57 @@ def _best_start(torus: Any) -> tuple[Any, str]:
 
 def _ended_early(
     reason: str, settled: Any, reached: Any, last: Any, advice: str
-) -> RefinedTorus:
+) -> Torus[Newton]:
     """The best torus there is where Newton's method failed, with a warning; else NoTorus.
 
     settled : the last iterate, if nothing but rounding was left to be gained. reached : the torus
     of fewer harmonics, on which the method converged.
     """
     tori = [torus for torus in (settled, reached) if torus is not None]
-    best: RefinedTorus | None
+    best: Torus[Newton] | None
     best = min(tori, key=lambda torus: torus.residual(), default=None)
     if best is None or not best.residual() <= USEFUL:
         left = last.residual()
         raise NoTorus(reason, last, left, DEGENERATE if left <= SOLVED else advice)
     left = f"the residual is {best.residual():.2g} with {len(best.harmonics)} harmonics"
     warnings = (f"{ENDED_EARLY}: {reason}; {left}",)
-    ended: RefinedTorus = replace(best, warnings=warnings)
+    ended: Torus[Newton] = replace(best, warnings=warnings)
     return ended
 
 
-def ended_early(torus: RefinedTorus) -> bool:
+def ended_early(torus: Torus[Newton]) -> bool:
     """Whether it is what Newton's method had reached when it failed."""
     return any(warning.startswith(ENDED_EARLY) for warning in torus.warnings)
 
 
-def _because(reason: str, torus: RefinedTorus) -> str:
+def _because(reason: str, torus: Torus[Newton]) -> str:
     """With the resonance of a ring that may be the cause."""
-    cause = driven_in_resonance(torus, torus.near_resonances) if torus.travels else ""
+    cause = (
+        driven_in_resonance(torus, torus.origin.near_resonances) if torus.travels else ""
+    )
     return f"{reason}; {cause}" if cause else reason
 
 
-def _coefficients(torus: QuasiPeriodic) -> tuple[Ints, Floats]:
+def _coefficients(torus: Torus) -> tuple[Ints, Floats]:
     with np.errstate(over="ignore"):
         return torus.harmonics, torus.cosines.astype(float)
 
 
 def _result(
-    torus: QuasiPeriodic,
+    torus: Torus,
     equation: InvarianceEquation,
     found: Iterate,
     frequencies: tuple[Fraction, ...],
-) -> RefinedTorus:
+) -> Torus[Newton]:
     """The torus of an iterate, without harmonics of a ring in which nothing moves."""
-    amplitudes = map(float, seed_amplitudes(equation, found.cosines))
     kept = equation.mask[:, 0] if torus.travels else slice(None)
-    return RefinedTorus(
-        chain=torus.chain,
-        seeds=torus.seeds,
-        frequencies=frequencies,
-        amplitudes=dict(zip(torus.seeds, amplitudes, strict=True)),
-        phases={q: float(phi) for q, phi in torus.phases.items()},
-        harmonics=equation.harmonics[kept],
-        cosines=found.cosines[kept].astype(float),
-        steps=found.steps,
-        near_resonances=near_resonances(equation, found.cosines, found.shifts),
+    return Torus(
+        torus.chain,
+        torus.seeds,
+        frequencies,
+        equation.harmonics[kept],
+        found.cosines[kept].astype(float),
+        {q: float(phi) for q, phi in torus.phases.items()},
         travels=torus.travels,
+        origin=Newton(found.steps, near_resonances(equation, found.cosines, found.shifts)),
     )

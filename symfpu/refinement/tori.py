@@ -15,7 +15,7 @@ from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 from symfpu.refinement.digits import (
-    PreciseTorus,
+    IterativeRefinement,
     guess_of,
     require_digits,
     torus_to_digits,
@@ -27,23 +27,20 @@ from symfpu.refinement.prescribed import Prescribed, prescribed_by
 from symfpu.refinement.refined_torus import (
     TOLERANCE,
     USEFUL,
+    Newton,
     NoTorus,
-    RefinedTorus,
     ended_early,
     refined_torus,
 )
 from symfpu.refinement.refinement_file import require_digits_beside
 from symfpu.refinement.umklapp import require_independent
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-
-REFINED = RefinedTorus, PreciseTorus
+from symfpu.tori.torus import Torus
 
 # the tori that are given, and what is asked of them, too
 __all__ = [
     "TOLERANCE",
     "USEFUL",
     "NoTorus",
-    "RefinedTorus",
     "ended_early",
     "refine",
     "refined_torus",
@@ -53,7 +50,7 @@ __all__ = [
 
 @overload
 def refine(
-    torus: QuasiPeriodic,
+    torus: Torus,
     *,
     frequencies: Sequence[Number] | Mapping[int, Number] | None = ...,
     amplitudes: Mapping[int, Number] | None = ...,
@@ -67,10 +64,10 @@ def refine(
     tolerance: float = ...,
     most_harmonics: int = ...,
     progress: Progress | None = ...,
-) -> PreciseTorus: ...
+) -> Torus[IterativeRefinement]: ...
 @overload
 def refine(
-    torus: QuasiPeriodic,
+    torus: Torus,
     *,
     frequencies: Sequence[Number] | Mapping[int, Number] | None = ...,
     amplitudes: Mapping[int, Number] | None = ...,
@@ -82,10 +79,10 @@ def refine(
     tolerance: float = ...,
     most_harmonics: int = ...,
     progress: Progress | None = ...,
-) -> RefinedTorus: ...
+) -> Torus[Newton]: ...
 @public
 def refine(
-    torus: QuasiPeriodic,
+    torus: Torus,
     *,
     frequencies: Sequence[Number] | Mapping[int, Number] | None = None,
     amplitudes: Mapping[int, Number] | None = None,
@@ -99,7 +96,7 @@ def refine(
     tolerance: float = TOLERANCE,
     most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
-) -> RefinedTorus | PreciseTorus:
+) -> Torus[Newton] | Torus[IterativeRefinement]:
     """The torus that solves the equations of motion, near a given one.
 
     It has given frequencies, amplitudes, energy or start: at most one of them, exact numbers,
@@ -119,8 +116,8 @@ def refine(
     start : Q_q(0) by seed, 0 is allowed; phases of 0 and pi are those of an orbit that starts at
         rest. Such an orbit is on the torus but for the modes that are no seeds, whose coordinates
         at t = 0 say how far off it is. Of fixed ends.
-    digits : None for doubles, or 1 .. 1000 of the largest coefficient: a PreciseTorus, by
-        iterative refinement of the torus in doubles or of a PreciseTorus of fewer digits.
+    digits : None for doubles, or 1 .. 1000 of the largest coefficient, by iterative refinement of
+        the torus in doubles or of one of fewer digits that was made so.
         Of a polynomial potential or one of exponentials and powers.
     file : with digits, a checkpoint written after every step; a run that finds one goes on from
         it, one to more digits, too.
@@ -176,9 +173,7 @@ def refine(
         raise NoTorus(str(failure), near, near.residual()) from None
 
 
-def _in_doubles(
-    torus: QuasiPeriodic, prescribed: Prescribed, how: dict[str, Any]
-) -> RefinedTorus:
+def _in_doubles(torus: Torus, prescribed: Prescribed, how: dict[str, Any]) -> Torus[Newton]:
     """With frequencies as they were typed.
 
     how : tolerance, most_harmonics and progress, as of `refine`.
@@ -188,11 +183,9 @@ def _in_doubles(
     return replace(found, frequencies=frequencies)
 
 
-def _near(
-    torus: QuasiPeriodic, prescribed: Prescribed, how: dict[str, Any]
-) -> QuasiPeriodic:
+def _near(torus: Torus, prescribed: Prescribed, how: dict[str, Any]) -> Torus:
     """The torus from which digits are refined: the given one, if it is what is asked for."""
     same = prescribed.held_frequencies == tuple(torus.frequencies)
-    if same and isinstance(torus, REFINED):
+    if same and isinstance(torus.origin, Newton | IterativeRefinement):
         return torus
     return _in_doubles(torus, prescribed, how)

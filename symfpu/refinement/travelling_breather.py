@@ -21,9 +21,9 @@ from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import Amplitude, Condition, Energy, FrequencyShift
 from symfpu.refinement.guesses import shifts_of
-from symfpu.refinement.refined_torus import NoTorus, RefinedTorus, refined_torus
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic
+from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus
 from symfpu.tori.short_waves import plain_waves, shifts_by_squares
+from symfpu.tori.torus import Torus
 
 LEAST_FREQUENCY = 1e-9  # of a guess
 REACH = 0.3  # relative change of the amplitude from a guess that stays on the family
@@ -40,7 +40,7 @@ def travelling_breather(
     amplitude: Number | None = None,
     energy: Number | None = None,
     progress: Progress | None = None,
-) -> RefinedTorus:
+) -> Torus[Newton]:
     """The travelling wave of one seed on a ring, with the given frequency, amplitude or energy.
 
     It is periodic: x_j(t) = f(omega t - 2 pi q j / N), and goes on by one site after 2 pi q / N
@@ -99,18 +99,18 @@ def _curvature(chain: Chain, q: int) -> float:
     return float(shifts_by_squares(chain, (q,))[0, 0])
 
 
-def _plain(chain: Chain, q: int, omega: Fraction, A: float) -> FourierTorus:
+def _plain(chain: Chain, q: int, omega: Fraction, A: float) -> Torus:
     """The wave of the seed alone."""
     return plain_waves(chain, (omega,), {q: A})
 
 
-def _of_amplitude(chain: Chain, q: int, A: Fraction) -> tuple[FourierTorus, Target]:
+def _of_amplitude(chain: Chain, q: int, A: Fraction) -> tuple[Torus, Target]:
     omega = _linear(chain, q) + _curvature(chain, q) * float(A) ** 2
     guess = _plain(chain, q, _positive(omega), float(A))
     return guess, lambda part: Amplitude(0, long(A) * np.longdouble(part))
 
 
-def _of_frequency(chain: Chain, q: int, omega: Fraction) -> tuple[FourierTorus, Target]:
+def _of_frequency(chain: Chain, q: int, omega: Fraction) -> tuple[Torus, Target]:
     guess = _plain(chain, q, omega, 1.0)
     (shift,) = shifts_of(guess)
     curvature = _curvature(chain, q)
@@ -124,7 +124,7 @@ def _of_frequency(chain: Chain, q: int, omega: Fraction) -> tuple[FourierTorus, 
     return guess, lambda part: FrequencyShift(0, shift * np.longdouble(part) ** 2)
 
 
-def _of_energy(chain: Chain, q: int, H: Fraction) -> tuple[FourierTorus, Target]:
+def _of_energy(chain: Chain, q: int, H: Fraction) -> tuple[Torus, Target]:
     """Of a wave of amplitude A the harmonic energy is Omega^2 A^2/2."""
     A = (2 * float(H)) ** 0.5 / _linear(chain, q)
     omega = _linear(chain, q) + _curvature(chain, q) * A**2
@@ -144,7 +144,7 @@ def _positive(omega: float) -> Fraction:
     return exact(max(omega, LEAST_FREQUENCY), "frequency")
 
 
-def _walk(end: QuasiPeriodic, target: Target, progress: Progress | None) -> RefinedTorus:
+def _walk(end: Torus, target: Target, progress: Progress | None) -> Torus[Newton]:
     """The member at the end of the way from rest, in one step or in more."""
     gone, step, near = 0.0, 1.0, (1.0, end)
     while True:
@@ -164,7 +164,7 @@ def _walk(end: QuasiPeriodic, target: Target, progress: Progress | None) -> Refi
             return found
 
 
-def _scaled(torus: QuasiPeriodic, ratio: float) -> FourierTorus:
+def _scaled(torus: Torus, ratio: float) -> Torus:
     """A guess further on: coefficients by the ratio, the shift by its square."""
     (q,) = torus.seeds
     linear = _linear(torus.chain, q)
@@ -173,7 +173,7 @@ def _scaled(torus: QuasiPeriodic, ratio: float) -> FourierTorus:
     return replace(plain, frequencies=(_positive(moved),), cosines=ratio * plain.cosines)
 
 
-def _require_near(found: RefinedTorus, guess: QuasiPeriodic) -> None:
+def _require_near(found: Torus[Newton], guess: Torus) -> None:
     """NoTorus where Newton's method went to another family."""
     change = abs(found.amplitude / guess.amplitude - 1)
     if change > REACH or found.frequency <= 0:

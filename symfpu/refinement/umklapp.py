@@ -12,7 +12,7 @@ from symfpu.errors import InputError
 from symfpu.refinement.lattice import low_harmonics
 from symfpu.refinement.resonances import NearResonance
 from symfpu.series.ring_resonances import resonant
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 SUSPECT = 1e-9  # of nu.omega, below which it is decided exactly
 STANDING = (
@@ -21,7 +21,7 @@ STANDING = (
 )
 
 
-def require_independent(torus: QuasiPeriodic, frequencies: Sequence[Fraction]) -> None:
+def require_independent(torus: Torus, frequencies: Sequence[Fraction]) -> None:
     """InputError where nu.omega = 0 for a low harmonic: the angles are not independent then.
 
     frequencies : of the seeds of the torus, (s,).
@@ -43,9 +43,7 @@ def _size(nu: list[int]) -> tuple[int, list[int]]:
     return sum(map(abs, nu)), [-n for n in nu]
 
 
-def driven_in_resonance(
-    torus: QuasiPeriodic, near_resonances: Sequence[NearResonance]
-) -> str:
+def driven_in_resonance(torus: Torus, near_resonances: Sequence[NearResonance]) -> str:
     """The lowest of the small divisors that are zero at the linear frequencies, in words.
 
     Empty where there is none.

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.action_angle.twist import Twist
-from symfpu.reports.solution import frequencies_record
+from symfpu.reports.series import frequencies_record
 from symfpu.reports.tables import fifteen_digits, number_text
-from symfpu.tori.quasiperiodic import QuasiPeriodic
+from symfpu.tori.torus import Torus
 
 PLACES = 12  # digits of doubles in lines for a reader
 
 
 def actions_record(
-    solution: QuasiPeriodic, by_angle: dict[int, Any], found: Twist | None
+    solution: Torus, by_angle: dict[int, Any], found: Twist | None
 ) -> dict[str, Any]:
     """What the verb prints: the twist with exact frequencies, or the actions alone."""
     frequencies = frequencies_record(solution)

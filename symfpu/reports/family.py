@@ -6,88 +6,14 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from symfpu.families.family import Family
 from symfpu.families.members import Event, Member
-from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.reports.normal import normal_event_record, normal_frequencies_record
-from symfpu.reports.solution import frequencies_record, solution_record
+from symfpu.reports.series import frequencies_record
 from symfpu.reports.tables import fifteen_digits, number_text
 
 SHOWN_EVENTS = 12
 SHOWN_MEMBERS = 8  # besides the first; the last one is among them
-SHOWN_DIVISORS = 5
-
-
-def refined_record(torus: RefinedTorus) -> dict[str, Any]:
-    """A refined torus for JSON: what all solutions have, and its Newton steps."""
-    record = solution_record(torus)
-    record["energy_error"] = fifteen_digits(energy_spread(torus))
-    record["newton"] = _newton_records(torus)
-    record["smallest_divisors"] = _divisor_records(torus)
-    record["verdict"] = torus.verdict
-    return record
-
-
-def _newton_records(torus: RefinedTorus) -> list[dict[str, Any]]:
-    records = []
-    for step in torus.steps:
-        residual = fifteen_digits(step.residual)
-        change = fifteen_digits(step.change)
-        record = {"residual": residual, "change": change, "products": step.krylov}
-        records.append(record)
-    return records
-
-
-def _divisor_records(torus: RefinedTorus) -> list[dict[str, Any]]:
-    records: list[dict[str, Any]] = []
-    for resonance in torus.near_resonances:
-        record: dict[str, Any] = {"size": fifteen_digits(resonance.divisor)}
-        record["mode"] = resonance.mode
-        record["harmonic"] = list(resonance.harmonic)
-        record["coefficient"] = fifteen_digits(resonance.coefficient)
-        records.append(record)
-    return records
-
-
-def energy_spread(torus: RefinedTorus, periods: int = 25, points: int = 100) -> float:
-    """Largest relative change of H along the orbit over some periods of the slowest seed."""
-    slowest = min(float(w) for w in torus.frequencies)
-    period = 2 * np.pi / slowest
-    times = np.linspace(0, periods * period, points)
-    energies, start = torus.energy(times), torus.energy()
-    return float(np.abs((energies - start) / start).max())
-
-
-def refined_text(torus: RefinedTorus) -> str:
-    """The same for a reader."""
-    record = refined_record(torus)
-    amplitudes = {q: float(a) for q, a in record["amplitudes"].items()}
-    average = f"time average {float(record['average_harmonic_energy']):.12g}"
-    relative = "equations of motion, relative to the largest acceleration"
-    newton = (
-        f"Newton steps {len(torus.steps)}, the last change {torus.steps[-1].change:.1g}"
-    )
-    lines = [f"verdict: {record['verdict']}"]
-    if "potential" in record:
-        lines.append(f"potential          {record['potential']}")
-    if "ends" in record:
-        lines.append(f"ends               {record['ends']}")
-    for q, w in record["frequencies"].items():
-        lines.append(f"seed {q:<4} omega {w:<28} amplitude {amplitudes[q]:.15g}")
-    lines.append(f"energy H           {float(record['energy']):.15g}   (at t = 0)")
-    lines.append(
-        f"harmonic energy    {float(record['harmonic_energy']):.15g}   (at t = 0; {average})"
-    )
-    lines.append(f"residual           {record['residual']:.2g}   ({relative})")
-    over = "relative, over 25 periods of the slowest seed"
-    lines.append(f"energy constancy   {record['energy_error']:.2g}   ({over})")
-    lines.append(f"harmonics          {record['harmonics']}, {newton}")
-    lines.append("smallest divisors:")
-    lines += [f"  {resonance}" for resonance in torus.near_resonances[:SHOWN_DIVISORS]]
-    lines += [f"warning: {warning}" for warning in torus.warnings]
-    return "\n".join(lines)
 
 
 def family_record(found: Family) -> dict[str, Any]:

@@ -12,9 +12,9 @@ from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
 from symfpu.normal.modes import NoNormalModes, NormalMode, NormalModes
 from symfpu.normal.phantom import NormalFrequencySeries
 from symfpu.normal.resonances import ParametricResonance
-from symfpu.reports.solution import frequencies_record
+from symfpu.reports.series import frequencies_record
 from symfpu.reports.tables import fifteen_digits, number_text
-from symfpu.tori.quasiperiodic import QuasiPeriodic, amplitudes_of
+from symfpu.tori.torus import Torus
 
 SHOWN_RESONANCES = 10
 
@@ -82,7 +82,7 @@ def normal_family_record(found: NormalFamily) -> dict[str, Any]:
 
 def _member_record(found: NormalModes, part: float) -> dict[str, Any]:
     """A member of a line; its chain and seeds are those of the line."""
-    amplitudes = amplitudes_of(found.torus).items()
+    amplitudes = found.torus.amplitudes.items()
     return {
         "part": fifteen_digits(part),
         "amplitudes": {str(q): repr(float(a)) for q, a in amplitudes},
@@ -97,7 +97,7 @@ def normal_family_text(found: NormalFamily) -> str:
     seeds = ",".join(map(str, found.members[0].torus.seeds))
     lines = [f"{chain}, seeds {seeds}: {len(found.members)} tori, {found.verdict}"]
     for one in found.members:
-        amplitudes = amplitudes_of(one.torus).items()
+        amplitudes = one.torus.amplitudes.items()
         where = ", ".join(f"A_{q}={float(a):.8g}" for q, a in amplitudes)
         lines.append(f"  {where}: {frequencies_of(one, {})!r}")
     lines += [f"  {event!r}" for event in found.events] or ["  no events"]
@@ -120,14 +120,14 @@ class BySeries(NamedTuple):
 def by_series(
     mode: NormalMode,
     solve: Callable[[int], NormalFrequencySeries],
-    torus: QuasiPeriodic,
+    torus: Torus,
 ) -> BySeries:
     """One mode by series; solve : gives the series that is its own sigma, by mode."""
     try:
         series = solve(mode.mode)
     except (NoNormalModes, ResonantDivisor) as none:
         return BySeries(mode, None, reason=str(none))
-    amplitudes = {q: float(a) for q, a in amplitudes_of(torus).items()}
+    amplitudes = {q: float(a) for q, a in torus.amplitudes.items()}
     return BySeries(mode, series, tuple(map(float, series.terms(amplitudes))))
 
 

@@ -36,27 +36,21 @@ from symfpu.numbers.arithmetic import text
 from symfpu.proofs.certificates import PropagationProof
 from symfpu.proofs.sweeps import Sweep
 from symfpu.proofs.theorem import RuleForAllN
-from symfpu.refinement.refined_torus import RefinedTorus
 from symfpu.reports.action_angle import twist_record
 from symfpu.reports.borders import atlas_record, law_record
 from symfpu.reports.certified import residual_proof_record, stay_record
 from symfpu.reports.dynamics import alignment_record, orbit_record
 from symfpu.reports.existence import existence_record
-from symfpu.reports.family import event_record, family_record, member_record, refined_record
+from symfpu.reports.family import event_record, family_record, member_record
 from symfpu.reports.head import headed
-from symfpu.reports.normal import (
-    normal_event_record,
-    normal_family_record,
-    normal_record,
-)
+from symfpu.reports.normal import normal_event_record, normal_family_record, normal_record
 from symfpu.reports.proofs import proof_record, sweep_record
+from symfpu.reports.series import series_record
 from symfpu.reports.solution import floquet_record, solution_record
 from symfpu.reports.stability_proof import stability_record
 from symfpu.reports.tables import fifteen_digits
-from symfpu.reports.torus import series_record, torus_record
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.torus import QTorus
+from symfpu.tori.torus import Torus
 
 Json = dict[str, Any]
 
@@ -167,9 +161,7 @@ def _distance_record(found: ProfileDistance) -> Json:
 
 
 KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
-    (QTorus, torus_record),
-    (RefinedTorus, refined_record),
-    (QuasiPeriodic, solution_record),
+    (Torus, solution_record),
     (ExistenceProof, existence_record),
     (StabilityProof, stability_record),
     (ResidualProof, residual_proof_record),

@@ -38,7 +38,7 @@ RESULTS = {
     "ProfileLine": "symfpu.localization.laws",
     "PropagationProof": "symfpu.proofs.certificates",
     "Recurrence": "symfpu.localization.recurrence",
-    "RootCertificate": "symfpu.tori.torus",
+    "RootCertificate": "symfpu.tori.from_series",
     "RuleForAllN": "symfpu.proofs.theorem",
     "SampledSeries": "symfpu.series.sample",
     "Sweep": "symfpu.proofs.sweeps",

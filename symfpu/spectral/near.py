@@ -13,13 +13,11 @@ from symfpu.errors import InputError
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import seed_modes
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine
-from symfpu.tori.quasiperiodic import FourierTorus
+from symfpu.tori.torus import Torus
 
 
 @public
-def torus_near(
-    analysis: FrequencyAnalysis, seeds: Sequence[int] | None = None
-) -> FourierTorus:
+def torus_near(analysis: FrequencyAnalysis, seeds: Sequence[int] | None = None) -> Torus:
     """The q-torus that an orbit is on or near, from its lines.
 
     analysis : of the orbit, by `frequency_analysis`; with more lines a mode the guess is better.
@@ -54,7 +52,7 @@ def torus_near(
         beside = line.phase - float(np.dot(nu, offsets))
         row = rows.setdefault(tuple(sign * n for n in nu), np.zeros(analysis.chain.N - 1))
         row[line.mode - 1] += line.amplitude * math.cos(beside)
-    return FourierTorus(
+    return Torus(
         analysis.chain,
         chosen,
         tuple(Fraction(float(analysis.frequencies[place])) for place in places),

@@ -27,17 +27,13 @@ from symfpu.frames.attributes import attributes
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
-from symfpu.numbers.arithmetic import (
-    GUARD_DIGITS,
-    Numbers,
-    mpf,
-    with_digits,
-)
+from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf, with_digits
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import decimal, exact, integer
 from symfpu.series.series import LindstedtSeries, require_any_series
+from symfpu.tori.from_series import FromSeries, series_behind
 from symfpu.tori.root_certificate import certify_root
-from symfpu.tori.torus import QTorus, series_behind
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 # relative residual below which growth with the order is no reason to doubt
@@ -144,7 +140,7 @@ def first_shifting_order(chain: Chain) -> int:
 
 
 @public
-def amplitude_history(series: LindstedtSeries | QTorus) -> AmplitudeHistory:
+def amplitude_history(series: LindstedtSeries | Torus[FromSeries]) -> AmplitudeHistory:
     """The amplitudes for every frequency order, each found from the one before.
 
     series : with chosen frequencies, or a torus solved from one; amplitudes are dimensionless, mpf
@@ -188,8 +184,8 @@ def solve_amplitudes(
     order: int | None = None,
     phases: Mapping[int, float] | None = None,
     guess: Mapping[int, float] | None = None,
-) -> QTorus:
-    """Seed amplitudes whose truncated frequency series equals the chosen frequencies: a QTorus.
+) -> Torus[FromSeries]:
+    """Seed amplitudes whose truncated frequency series equals the chosen frequencies: a torus.
 
     Solves Eq. omeser.
 
@@ -244,16 +240,16 @@ def solve_amplitudes(
     squares, residual = root_squares(series, orders[-1], start)
     amplitudes = square_roots(series, squares)
     certificate = certify_root(series, list(squares), K) if series.digits else None
-    torus = QTorus(
+    origin = FromSeries(
         series=series,
-        amplitudes=dict(zip(series.seeds, amplitudes, strict=True)),
-        phases=angles,
+        amplitudes=tuple(amplitudes),
         frequency_order=K,
         order=coordinate_order,
         history=dict(history.amplitudes),
         root_residual=residual,
         certificate=certificate,
     )
+    torus = origin.torus(angles)
     doubts = order_doubts(amplitudes, orders, history)
     return torus.doubted((*doubts, *residual_doubts(torus)))
 
@@ -513,7 +509,7 @@ def _parting_doubts(orders: list[int], history: AmplitudeHistory) -> list[str]:
     return [f"{agree} and move apart beyond"]
 
 
-def residual_doubts(torus: QTorus) -> tuple[str, ...]:
+def residual_doubts(torus: Torus[FromSeries]) -> tuple[str, ...]:
     """Whether the residual of the equations of motion is large, or grew with the last two orders.
 
     Decided at few angles; the one residual that is stated is `torus.residual()`.
@@ -528,12 +524,13 @@ def residual_doubts(torus: QTorus) -> tuple[str, ...]:
         doubts.append(
             f"the equations of motion are met only to {met} of the largest acceleration"
         )
-    before = torus.order - 2
+    before = torus.origin.order - 2
     if before >= 1 and residual > RESIDUAL_FLOOR:
-        shorter = torus.cut_at(before)
+        shorter = torus.origin.cut_at(before).torus(torus.phases)
         earlier = shorter.residual(points)
         if residual > 1.05 * earlier:
-            growth = f"grows, {residual / earlier:.3g} times from order {before} to {torus.order}"
+            orders = f"from order {before} to {before + 2}"
+            growth = f"grows, {residual / earlier:.3g} times {orders}"
             advice = "cut the series earlier, by order="
             doubts.append(f"the residual of the equations of motion {growth}: {advice}")
     return tuple(doubts)

@@ -26,7 +26,8 @@ from symfpu.tori.frequencies import (
     positive_by_seed,
     refuse_tiny,
 )
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 # relative error of the energy: what is not worth another torus, what a solution may leave
 LEAST_ERROR, LARGEST_ERROR = 2e-15, 2e-13
@@ -78,7 +79,7 @@ class _Member:
     unknowns: Numbers
     inverse: Numbers
     point: Point
-    torus: QTorus | None
+    torus: Torus[FromSeries] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +100,7 @@ class _Target:
     weights: tuple[Fraction, ...]  # of A^2 of the seeds, or of their mode energies
     by_amplitude: bool
 
-    def measured(self, torus: QTorus) -> Any:
+    def measured(self, torus: Torus[FromSeries]) -> Any:
         """H, or the sum of E_q, at t = 0."""
         return torus.harmonic_energies().sum() if self.harmonic else torus.energy()
 
@@ -123,7 +124,9 @@ class _Target:
             squares = part * self.linear_squares
             point = member.point
 
-            def equations(x: Numbers) -> tuple[Numbers, float, tuple[Point, QTorus]]:
+            def equations(
+                x: Numbers,
+            ) -> tuple[Numbers, float, tuple[Point, Torus[FromSeries]]]:
                 nonlocal point
                 if not all(x > 0):
                     raise NotFound(x, float("nan"), "an amplitude goes to zero")
@@ -139,12 +142,12 @@ class _Target:
             point, torus = found.value
             return _Member(found.x, found.inverse, point, torus)
 
-    def _torus(self, point: Point) -> QTorus:
+    def _torus(self, point: Point) -> Torus[FromSeries]:
         roots = self.search.numbers.sqrt(point.squares)
         amplitudes = dict(zip(self.search.seeds, roots.tolist(), strict=True))
         return assembled(self.search, point, self.plan, amplitudes)
 
-    def _left(self, torus: QTorus, part: float) -> Numbers:
+    def _left(self, torus: Torus[FromSeries], part: float) -> Numbers:
         number = self.search.numbers.number
         ratio = self.measured(torus) / (part * number(self.energy))
         if self.by_amplitude:
@@ -160,7 +163,7 @@ class _Target:
         last_place = 10.0 ** -(digits + SPARE_DIGITS)
         return last_place, last_place
 
-    def from_torus(self, torus: QTorus) -> _Member:
+    def from_torus(self, torus: Torus[FromSeries]) -> _Member:
         """The member with the whole energy near a torus, in doubles; raises NotFound."""
         point = self.search.point_of(torus)
         unknowns = point.squares / self.linear_squares
@@ -169,7 +172,7 @@ class _Target:
         start = _Member(unknowns, np.eye(len(unknowns)), point, torus)
         return self.near(start, 1.0)
 
-    def solved(self, near: QTorus | None = None) -> _Member:
+    def solved(self, near: Torus[FromSeries] | None = None) -> _Member:
         """The member with the whole energy, in doubles: near a torus, else from rest.
 
         Raises NoTorusAtEnergy.
@@ -202,7 +205,7 @@ class _Target:
                 raise NoTorusAtEnergy(self, member, failure) from failure
 
 
-def _refuse_strange(found: Found[tuple[Point, QTorus]], member: _Member) -> None:
+def _refuse_strange(found: Found[tuple[Point, Torus[FromSeries]]], member: _Member) -> None:
     """NotFound for a torus far from the last one, or one that is hardly an orbit."""
     distance = float(np.max(np.abs(found.x - member.unknowns)))
     size = float(np.max(np.abs(member.unknowns)))
@@ -232,8 +235,8 @@ def torus_at_energy(
     coordinate_order: int | None = None,
     phases: Mapping[int, Number] | None = None,
     digits: int | None = None,
-    near: QTorus | None = None,
-) -> QTorus:
+    near: Torus[FromSeries] | None = None,
+) -> Torus[FromSeries]:
     """The q-torus of a given energy and ratio of seed amplitudes or mode energies.
 
     Its frequencies are found.

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.tori.columns import columns_of
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
 
@@ -18,7 +19,7 @@ GRID_POINTS, MOST_POINTS = 512, 1024
 NOISE = 1e-14  # relative residual below which doubles tell no order from another
 
 
-def best_order(torus: QTorus) -> int:
+def best_order(torus: Torus[FromSeries]) -> int:
     """The order of the coordinates, up to that of the torus, that leaves the least residual.
 
     Relative to the largest acceleration, as `assess` takes it, on the same angles. Of orders whose
@@ -27,10 +28,10 @@ def best_order(torus: QTorus) -> int:
     residuals = residuals_by_order(torus)
     least = float(residuals.min())
     good = np.flatnonzero(residuals <= max(least, NOISE))
-    return int(good[-1]) if len(good) else torus.order
+    return int(good[-1]) if len(good) else torus.origin.order
 
 
-def residuals_by_order(torus: QTorus) -> Floats:
+def residuals_by_order(torus: Torus[FromSeries]) -> Floats:
     """Largest |d^2Q/dt^2 - force| over the largest |force|, cut at each order; (order + 1,).
 
     Infinite where a coefficient or a force is no number.
@@ -44,7 +45,7 @@ def residuals_by_order(torus: QTorus) -> Floats:
     linear: Any = 0.0  # d^2Q/dt^2 less the linear force
     found = []
     with np.errstate(over="ignore", invalid="ignore"):
-        for nu, exact in torus.terms_by_order[: torus.order + 1]:
+        for nu, exact in torus.origin.terms_by_order[: torus.origin.order + 1]:
             columns = columns_of(chain, torus.seeds, nu, travels=torus.travels)
             values = exact.astype(float)
             off = (columns.linear() ** 2 - (nu @ omega)[:, None] ** 2) * values
@@ -55,7 +56,7 @@ def residuals_by_order(torus: QTorus) -> Floats:
             anharmonic = chain.anharmonic_accelerations(Q)
             largest = np.abs(anharmonic - squares * Q).max()
             found.append(np.abs(linear - anharmonic).max() / largest)
-    residuals = np.full(torus.order + 1, np.inf)
+    residuals = np.full(torus.origin.order + 1, np.inf)
     residuals[: len(found)] = found
     residuals[np.isnan(residuals)] = np.inf
     return residuals
@@ -67,7 +68,7 @@ def angles_a_seed(seeds: int, points: int) -> int:
     return max(2, min(64, number))
 
 
-def some_angles(torus: QTorus, number: int) -> Numbers:
+def some_angles(torus: Torus[FromSeries], number: int) -> Numbers:
     """A tensor grid of angles of so many for each seed, in the numbers of the torus; shape (P, s).
 
     For many seeds, where even two points for each are too many, points drawn at random.

@@ -42,8 +42,9 @@ from symfpu.tori.amplitudes import (
     shifts,
 )
 from symfpu.tori.broyden import Found, NotFound, solve, walk
+from symfpu.tori.from_series import FromSeries, require_series_torus
 from symfpu.tori.root_certificate import certify_root
-from symfpu.tori.torus import QTorus, require_series_torus
+from symfpu.tori.torus import Torus
 
 LARGEST_NUMBER = 10**60  # size of an amplitude or a weight
 SMALLEST_SHIFT = 1e-30  # of a frequency; what `shifts` still sees in doubles
@@ -175,9 +176,9 @@ class Frequencies:
             raise NoSelfConsistentFrequencies(self, squares, end.squares, failure)
         return end
 
-    def point_of(self, torus: QTorus) -> Point:
+    def point_of(self, torus: Torus[FromSeries]) -> Point:
         """The solution that a torus is, in doubles; InputError for one of other seeds or chain."""
-        series = require_series_torus(torus, "near").series
+        series = require_series_torus(torus, "near").origin.series
         same = series.chain == self.chain and tuple(sorted(series.seeds)) == self.seeds
         if not same or series.order < self.frequency_order:
             allowed = "a torus of this chain, these seeds and this frequency order at least"
@@ -352,8 +353,8 @@ def torus_at_amplitudes(
     coordinate_order: int | None = None,
     phases: Mapping[int, Number] | None = None,
     digits: int | None = None,
-    near: QTorus | None = None,
-) -> QTorus:
+    near: Torus[FromSeries] | None = None,
+) -> Torus[FromSeries]:
     """The q-torus with these seed amplitudes; its frequencies are found (Eq. omeser).
 
     Solves omega = Omega + sum mu^k omega^(k)(A; omega).
@@ -429,7 +430,7 @@ def refuse_tiny(
 
 def assembled(
     search: Frequencies, point: Point, plan: Plan, amplitudes: Mapping[int, Any]
-) -> QTorus:
+) -> Torus[FromSeries]:
     """The torus of a solution, without warnings.
 
     Amplitudes as exact numbers or in the arithmetic of the search.
@@ -450,22 +451,22 @@ def assembled(
             given[q] = search.numbers.number(a) if isinstance(a, Fraction) else a
     at_rest = dict.fromkeys(series.seeds, 0.0)
     phases = at_rest | by_seed("phases", plan.phases, series)
-    return QTorus(
+    origin = FromSeries(
         series=series,
-        amplitudes=given,
-        phases=phases,
+        amplitudes=tuple(given[q] for q in series.seeds),
         frequency_order=plan.frequency_order,
         order=plan.coordinate_order,
         root_residual=residual,
     )
+    return origin.torus(phases)
 
 
-def doubted(torus: QTorus) -> QTorus:
+def doubted(torus: Torus[FromSeries]) -> Torus[FromSeries]:
     """The same torus with its amplitude history, certificate and doubts.
 
     As `solve_amplitudes` gives them.
     """
-    series, K = torus.series, torus.frequency_order
+    series, K = torus.origin.series, torus.origin.frequency_order
     orders = [k for k in frequency_orders(series) if k <= K]
     try:
         history = amplitude_history(series)
@@ -486,5 +487,5 @@ def doubted(torus: QTorus) -> QTorus:
             squares = [a**2 for a in amplitudes]
             certificate = certify_root(series, squares, K)
     known = dict(history.amplitudes)
-    judged = replace(torus, history=known, certificate=certificate)
-    return judged.doubted(tuple(doubts))
+    judged = replace(torus, origin=torus.origin.judged(known, certificate))
+    return judged.doubted(doubts)

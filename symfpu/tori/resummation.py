@@ -9,8 +9,8 @@ approximants differ by says how far they can be trusted.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
 
 import mpmath
 import numpy as np
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from symfpu.chain.frequency_shift import LARGEST_AMPLITUDE
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
 from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.grid import Variable
 from symfpu.frames.table import Column, Table
 from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import (
@@ -34,13 +34,9 @@ from symfpu.numbers.mpfr import MPFR, at_the_face, in_mpf, inside
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, order_of
 from symfpu.series.series import LindstedtSeries, require_any_series
-from symfpu.tori.amplitudes import (
-    first_shifting_order,
-    frequency_orders,
-    shifts,
-)
-from symfpu.tori.quasiperiodic import FourierTorus, require_fixed_solution
-from symfpu.tori.torus import QTorus, require_series_torus
+from symfpu.tori.amplitudes import first_shifting_order, frequency_orders, shifts
+from symfpu.tori.from_series import FromSeries, require_series_torus
+from symfpu.tori.torus import Origin, Torus, require_fixed_solution
 
 Floats = NDArray[np.float64]
 
@@ -293,36 +289,35 @@ def _solved(equations: Callable[..., list[Any]], count: int, digits: int | None)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ResummedTorus(FourierTorus):
-    """A torus whose coefficients are Pade sums. Made by `resum`; dimensionless, phases in radians.
+class Resummed(Origin):
+    """Where a torus comes from: its coefficients are Pade sums of a series (`resum`).
 
-    chain, seeds, frequencies, phases, digits, travels, warnings : those of the torus. harmonics :
-        (H, s).
-        cosines : resummed, (H, N-1).
-    disagreement : of neighbouring approximants, doubles, (H, N-1); trust, no bound. Wynn, MTAC 10
-        (1956) 91.
+    disagreement : of neighbouring approximants, doubles, (H, N-1), dimensionless; trust, no bound.
+        Wynn, MTAC 10 (1956) 91.
 
     >>> from symfpu import Chain, lindstedt, resum, solve_amplitudes
     >>> torus = resum(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 4)))
-    >>> torus
-    ResummedTorus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4056676815382, 6 harmonics)
-    >>> torus.disagreement.shape == torus.cosines.shape
+    >>> torus.origin.disagreement.shape == torus.cosines.shape
     True
     >>> "disagreement" in torus.to_xarray()
     True
     """
 
-    disagreement: Floats = field(repr=False, default_factory=lambda: np.zeros((0, 0)))
+    name: ClassVar[str] = "Pade sums"
 
-    def _grid(self) -> Grid:
-        grid = super()._grid()
+    disagreement: Floats
+
+    def facts(self) -> tuple[str, ...]:
+        largest = self.disagreement.max(initial=0.0)
+        return (f"Pade sums, largest disagreement {largest:.2g}",)
+
+    def variables(self) -> dict[str, Variable]:
         meaning = "distance of neighbouring approximants of a coefficient"
-        trust = Variable(("harmonic", "mode"), self.disagreement, meaning)
-        return replace(grid, variables={**grid.variables, "disagreement": trust})
+        return {"disagreement": Variable(("harmonic", "mode"), self.disagreement, meaning)}
 
 
 @public
-def resum(torus: QTorus) -> ResummedTorus:
+def resum(torus: Torus[FromSeries]) -> Torus[Resummed]:
     """The same torus with every coefficient c_q[nu] resummed, up to the torus' own order.
 
     torus : of a series, from `solve_amplitudes`; its amplitudes and phases stay. Everything is
@@ -338,48 +333,50 @@ def resum(torus: QTorus) -> ResummedTorus:
     True
     """
     require_fixed_solution(require_series_torus(torus), "torus")
-    return next(resum_by_order(torus, [torus.order]))
+    return next(resum_by_order(torus, [torus.origin.order]))
 
 
-def resum_by_order(torus: QTorus, orders: Iterable[int]) -> Iterator[ResummedTorus]:
+def resum_by_order(
+    torus: Torus[FromSeries], orders: Iterable[int]
+) -> Iterator[Torus[Resummed]]:
     """The torus resummed from the terms up to each of some orders.
 
     InputError for one above its own.
     """
     orders = [order_of(order) for order in orders]
     highest = max(orders, default=0)
-    if highest > torus.order:
-        allowed = f"0..{torus.order}, the order of the torus"
+    if highest > torus.origin.order:
+        allowed = f"0..{torus.origin.order}, the order of the torus"
         raise InputError("order", highest, allowed, "take a torus of higher order")
-    context = torus.series.numbers.context
-    digits = torus.series.digits
+    context = torus.origin.series.numbers.context
+    digits = torus.origin.series.digits
     keep = (torus.chain, torus.seeds, torus.frequencies, torus.harmonics)
     with context(digits):
         table = _terms_by_order(torus)
     for order in orders:
         with context(digits):
             cosines, disagreement = _resummed(table[: order + 1], torus)
-        yield ResummedTorus(
-            *keep, cosines, torus.phases, torus.digits, disagreement=disagreement
+        yield Torus(
+            *keep, cosines, torus.phases, torus.digits, origin=Resummed(disagreement)
         )
 
 
-def _terms_by_order(torus: QTorus) -> Numbers:
+def _terms_by_order(torus: Torus[FromSeries]) -> Numbers:
     """The terms of the coefficients of a torus by order; shape (order + 1, H, N-1).
 
     With digits, MPFR's numbers.
     """
-    series = torus.series
+    series = torus.origin.series
     grading = series.grading
     keys = grading.harmonic_keys(torus.harmonics)
-    table = inside(series.numbers).zeros((torus.order + 1, *torus.cosines.shape))
-    for k, (nu, values) in enumerate(torus.terms_by_order[: torus.order + 1]):
+    table = inside(series.numbers).zeros((torus.origin.order + 1, *torus.cosines.shape))
+    for k, (nu, values) in enumerate(torus.origin.terms_by_order[: torus.origin.order + 1]):
         rows = np.searchsorted(keys, grading.harmonic_keys(nu))
         table[k, rows] = values
     return table
 
 
-def _resummed(table: Numbers, torus: QTorus) -> tuple[Numbers, Floats]:
+def _resummed(table: Numbers, torus: Torus[FromSeries]) -> tuple[Numbers, Floats]:
     """Every coefficient of (orders, H, N-1) summed over its orders.
 
     Those at which its harmonic can appear.

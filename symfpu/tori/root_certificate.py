@@ -25,7 +25,7 @@ from symfpu.algebra.polynomials import (
 )
 from symfpu.chain.chain import Chain
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.torus import RootCertificate
+from symfpu.tori.from_series import RootCertificate
 
 EXTRA_BITS = 64  # of the balls beyond the coefficients
 

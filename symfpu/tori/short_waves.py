@@ -16,8 +16,8 @@ from symfpu.chain.chain import Chain
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import exact
 from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.quasiperiodic import FourierTorus
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus
 
 DIGITS = 25  # of the frequencies
 # relative shift of the frequencies of the series whose first corrections are read
@@ -38,15 +38,17 @@ def shifts_by_squares(chain: Chain, seeds: Sequence[int]) -> NDArray[np.float64]
 
 def plain_waves(
     chain: Chain, frequencies: Sequence[Fraction], amplitudes: Mapping[int, float]
-) -> FourierTorus:
+) -> Torus:
     """The waves of the seeds alone; amplitudes : by seed, in the order of the frequencies."""
     seeds = tuple(amplitudes)
     each = np.eye(len(seeds), dtype=np.int64)
     cosines = np.array(list(amplitudes.values()), dtype=float)[:, None]
-    return FourierTorus(chain, seeds, tuple(frequencies), each, cosines, travels=True)
+    return Torus(chain, seeds, tuple(frequencies), each, cosines, travels=True)
 
 
-def short_waves(chain: Chain, amplitudes: Mapping[int, float], order: int) -> QTorus:
+def short_waves(
+    chain: Chain, amplitudes: Mapping[int, float], order: int
+) -> Torus[FromSeries]:
     """The series to an order about the frequencies that amplitudes shift, with these.
 
     Raises ResonantDivisor where a resonance of the ring is of so low an order.
@@ -58,5 +60,4 @@ def short_waves(chain: Chain, amplitudes: Mapping[int, float], order: int) -> QT
         shifted = [chain.linear_frequency(q) + mpmath.mpf(w) for q, w in pairs]
         omega = tuple(Fraction(text(w, DIGITS)) for w in shifted)
     series = lindstedt(chain, seeds, omega, order)
-    at_rest = dict.fromkeys(seeds, 0.0)
-    return QTorus(series, dict(amplitudes), at_rest, frequency_order=order, order=order)
+    return FromSeries(series, tuple(amplitudes.values()), order, order).torus()

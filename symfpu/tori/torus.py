@@ -1,226 +1,622 @@
-"""A q-torus with numbers in it: a series at chosen amplitudes."""
+"""Quasi-periodic solutions by their cosine coefficients.
+
+They give the orbit, its energies, their averages, and residuals.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from numbers import Real
+from typing import Any, ClassVar, Generic, Self, TypeGuard
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from typing_extensions import TypeVar
 
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
-from symfpu.numbers.arithmetic import Numbers, text, with_digits
-from symfpu.numbers.mpfr import at_the_face, inside
+from symfpu.frames.attributes import RADIANS, attributes
+from symfpu.frames.grid import Grid, Variable
+from symfpu.frames.table import joined
+from symfpu.frames.tabled import Gridded
+from symfpu.notebook import Shown
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    MULTIPRECISION,
+    Arithmetic,
+    Numbers,
+    text,
+    with_digits,
+)
+from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
-from symfpu.numbers.typed import order_of
-from symfpu.series.series import LindstedtSeries
-from symfpu.tori.columns import columns_of
-from symfpu.tori.quasiperiodic import QuasiPeriodic, show
+from symfpu.numbers.typed import integer
+from symfpu.tori.columns import CHUNK, Columns, ModeColumns, columns_of, require_columns
+
+Floats = NDArray[np.float64]
+Value = TypeVar("Value")
+
+GRID_POINTS = 4096  # angles at which a residual is taken, about
+MOST_ANGLES = 10**8  # angles of a grid that is asked for; minutes
+TRANSFORMED = 4 * GRID_POINTS  # angles whose sums are held at once, at most
+DOUBLES_RESIDUAL = 1e-10  # relative residuals above it need no more digits
+GRID_POINTS_DIGITS = 16  # the same for numbers of many digits
+SHOWN_DIGITS = 40  # of amplitudes, at most, in print
 
 
-@dataclass(frozen=True)
-class RootCertificate(Tabled):
-    """Whether the truncated system is proved to have exactly one root near the amplitudes.
+class Origin:
+    """How a torus was made. Classes of it keep what only that way of making one knows.
 
-    By interval Newton in ball arithmetic; ours: the paper proves no root.
-
-    certified : whether it is.
-    radius : by seed, dimensionless; in the box of amplitudes within it there is exactly one root
-        of Eq. omeser truncated, wherever in its proved error bounds each coefficient of the
-        series lies (A^2 of the root is within 10^-digits, relative).
-    reason : if not certified, the inequality that failed.
-
-    >>> from symfpu import Chain, lindstedt, solve_amplitudes
-    >>> series = lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 4, digits=20)
-    >>> solve_amplitudes(series).certificate.certified
-    True
-    >>> RootCertificate(False, {}, "the box does not shrink")
-    RootCertificate(not proved: the box does not shrink)
-    >>> solve_amplitudes(series).certificate.to_frame().seed.tolist()
-    [1]
+    >>> Origin()
+    Origin()
     """
 
-    certified: bool
-    radius: Mapping[int, Any]  # mpf: doubles end at 1e-308
-    reason: str = ""
+    name: ClassVar[str] = "given"
+
+    def facts(self) -> tuple[str, ...]:
+        """What the torus says of it in print, besides what all tori say."""
+        return ()
+
+    def quality(self, torus: Torus) -> str:
+        """How well it solves the equations of motion, in print."""
+        return f"residual {torus.residual():.2g}"
+
+    def variables(self) -> dict[str, Variable]:
+        """Arrays of its own for the data set of the torus."""
+        return {}
+
+    def chosen_amplitudes(self) -> tuple[Any, ...] | None:
+        """A in the order of the seeds, where they were chosen before the coefficients."""
+        return None
 
     def __repr__(self) -> str:
-        if not self.certified:
-            return f"RootCertificate(not proved: {self.reason})"
-        radii = ", ".join(f"A_{q} within {text(r, 2)}" for q, r in self.radius.items())
-        return f"RootCertificate(exactly one root, {radii})"
+        return f"{type(self).__name__}({', '.join(self.facts())})"
 
-    def _table(self) -> Table:
-        known = attributes(self, certified=self.certified, reason=self.reason)
-        columns = {"seed": list(self.radius), "radius": list(self.radius.values())}
-        return Table(columns, known)
+
+Made = TypeVar("Made", bound=Origin, default=Origin, covariant=True)
+Kind = TypeVar("Kind", bound=Origin)
+GIVEN = Origin()
 
 
 @public
-@dataclass(frozen=True, eq=False)
-class QTorus(QuasiPeriodic):
-    """The torus of a series at chosen amplitudes, cut at `order`.
+@dataclass(frozen=True, eq=False, repr=False)
+class Torus(Shown, Gridded, Generic[Made]):
+    """A solution Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
 
-    Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)); travelling waves on a ring.
+    Every torus and breather is one, with fixed ends and on a ring: what a series, Newton's method
+    or harmonic balance finds, or what is given.
 
-    Made by `solve_amplitudes` and others (Eqs. qser, serabs1); dimensionless, phases in radians.
+    chain : the model; all quantities are dimensionless, phases in radians. seeds : the s modes
+        that name the angles.
+    frequencies : omega of every seed, exact, shape (s,). harmonics : the nu, integers, one of each
+        pair +-nu, shape (H, s).
+    cosines : their coefficients, shape (H, C): c_q[nu] of the modes with fixed ends. On a ring
+        those of travelling waves, C = 1, or of standing waves, whose columns are the modes of half
+        of it (`symfpu.tori.columns`).
+    phases : phi by seed, 0 where left out. digits : of the cosines in mpf; None for doubles.
+    travels : True for travelling waves of a ring. warnings : reasons to doubt that this is a torus.
+    origin : how it was made, with what only that way knows: `FromSeries`, `Resummed`, `Newton`,
+        `IterativeRefinement` or `HarmonicBalance`; `Origin()` of coefficients that were given.
 
-    series : it was solved from. amplitudes, phases : by seed.
-    frequency_order : truncation of the frequency series that gave the amplitudes.
-        order : truncation of the coordinates.
-    history : K -> amplitudes, (s,), by frequency order. root_residual : largest
-        |omega_q - truncated series|.
-    certificate : whether the root is proved to exist (series with digits only).
-    warnings : reasons to doubt that this is a torus.
+    On a ring mode coordinates are complex, Q_(-q) = conj Q_q. With digits, results are mpf or
+    arrays of them, evaluated with that many digits and more, which print that many; else doubles.
 
-    harmonics (H, s) and cosines (H, N-1), on a ring (H, 1), follow from the series; with
-    digits all numbers are mpf.
+    Eqs. qser and serabs1 with the amplitudes put in. Whether it solves the equations of motion is
+    what `residual` measures. Raises InputError for coefficients of another shape.
 
-    >>> from symfpu import Chain, lindstedt, solve_amplitudes
-    >>> solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8))
-    QTorus(N=8, alpha=0.3, A_1=0.247740186794, frequency order 8, order 8, H=0.004714606926,
-    residual ...)
-    >>> torus = solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8))
-    >>> dict(torus.to_xarray().sizes)
-    {'harmonic': 10, 'seed': 1, 'mode': 7}
+    >>> from symfpu import Chain
+    >>> half = (Fraction(1, 2),)
+    >>> harmonics, cosines = np.array([[1]]), np.array([[1.0, 0, 0]])
+    >>> mode = Torus(Chain(4, alpha=1), (1,), half, harmonics, cosines, {1: 0.0})
+    >>> mode
+    Torus(N=4, alpha=1, omega_1=0.5, A_1=1, H=..., 1 harmonic, residual ...)
+    >>> mode.Q(0.0)
+    array([1., 0., 0.])
+    >>> mode.to_frame()
+      harmonic  mode  nu_1  cosine  average_energy  linear_frequency
+    0        1     1     1     1.0        0.208947          0.765367
+    1        1     2     1     0.0        0.000000          1.414214
+    2        1     3     1     0.0        0.000000          1.847759
     """
 
-    series: LindstedtSeries = field(repr=False)
-    amplitudes: Mapping[int, Any]
-    phases: Mapping[int, Any]
-    frequency_order: int
-    order: int
-    history: Mapping[int, tuple[Any, ...]] = field(repr=False, default_factory=dict)
-    root_residual: float = 0.0
-    certificate: RootCertificate | None = None
+    chain: Chain
+    seeds: tuple[int, ...]
+    frequencies: tuple[Fraction, ...]
+    harmonics: Ints
+    cosines: Numbers
+    phases: Mapping[int, Any] = field(default_factory=dict)
+    digits: int | None = None
+    travels: bool = False
     warnings: tuple[str, ...] = ()
+    origin: Made = GIVEN  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        show(self, "amplitudes", "phases", "history")
+        require_columns(
+            self.chain, self.seeds, self.harmonics, self.cosines, travels=self.travels
+        )
+        phases = {q: self.phases.get(q, 0.0) for q in self.seeds}
+        object.__setattr__(self, "phases", phases)
+        show(self, "cosines", "phases")
 
     def __repr__(self) -> str:
-        places = self.digits or 12
         chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
-        amplitudes = ", ".join(
-            f"A_{q}={text(a, places)}" for q, a in self.amplitudes.items()
-        )
-        orders = f"frequency order {self.frequency_order}, order {self.order}"
-        quality = f"H={float(self.energy()):.10g}, residual {self.residual():.2g}"
+        by_seed = zip(self.seeds, self.frequencies, strict=True)
+        rates = [f"omega_{q}={float(w):.13g}" for q, w in by_seed]
+        places = min(self.digits or 13, SHOWN_DIGITS)
+        more = ".." if (self.digits or 0) > SHOWN_DIGITS else ""
+        amplitudes = [f"A_{q}={text(A, places)}{more}" for q, A in self.amplitudes.items()]
+        digits = [] if self.digits is None else [counted(self.digits, "digit")]
+        energy, harmonics = float(self.energy()), counted(len(self.harmonics), "harmonic")
+        quality = [f"H={energy:.12g}", harmonics, self.origin.quality(self)]
+        known = [chain, *rates, *amplitudes, *digits, *quality, *self.origin.facts()]
         doubts = "".join(f"; {warning}" for warning in self.warnings)
-        return f"QTorus({chain}, {amplitudes}, {orders}, {quality}{self._proof()}{doubts})"
+        return f"Torus({', '.join(known)}{doubts})"
 
-    def _proof(self) -> str:
-        """What is known of the root, for print."""
-        if self.certificate is None:
-            return ""
-        return ", certified" if self.certificate.certified else ", not certified"
-
-    @property
-    def chain(self) -> Chain:
-        """The chain."""
-        return self.series.chain
-
-    @property
-    def travels(self) -> bool:  # type: ignore[override]
-        """Series of a ring are of travelling waves."""
-        return self.chain.periodic
-
-    @property
-    def seeds(self) -> tuple[int, ...]:
-        """The seed modes."""
-        return self.series.seeds
-
-    @property
-    def frequencies(self) -> tuple[Fraction, ...]:
-        """The chosen frequency of every seed."""
-        assert self.series.frequencies is not None
-        return self.series.frequencies
-
-    @property
-    def digits(self) -> int | None:
-        """Digits of all results; None for doubles."""
-        return self.series.digits
-
-    def doubted(self, warnings: tuple[str, ...]) -> QTorus:
-        """The same torus with warnings; what was computed of it is kept."""
-        doubts = tuple(warnings)
-        return self._with_known(replace(self, warnings=doubts), "_terms", "_residual")
-
-    def cut_at(self, order: int) -> QTorus:
-        """The same torus up to a lower order of its coordinates; its terms are kept."""
-        lower = order_of(order)
-        if lower > self.order:
-            advice = "make the torus with a higher order"
-            raise InputError("order", lower, f"an integer in 0..{self.order}", advice)
-        return self._with_known(replace(self, order=lower))
-
-    def _with_known(self, torus: QTorus, *names: str) -> QTorus:
-        for name in ("terms_by_order", *names):
-            if name in self.__dict__:
-                torus.__dict__[name] = self.__dict__[name]
+    def doubted(self, warnings: Sequence[str]) -> Self:
+        """The same torus with these warnings; its residual is kept where it is known."""
+        torus = replace(self, warnings=tuple(warnings))
+        if "_residual" in self.__dict__:
+            torus.__dict__["_residual"] = self.__dict__["_residual"]
         return torus
 
     @cached_property
-    def terms_by_order(self) -> tuple[tuple[Ints, Numbers], ...]:
-        """Harmonics (H, s) and terms of their coefficients (H, C) of every order from 0 on.
+    def amplitudes(self) -> Mapping[int, Any]:
+        """A_q by seed, the coefficient of cos(theta_q) in Q_q, or of the wave of the seed.
 
-        At least up to that of the torus; with digits, MPFR's numbers.
+        Zero where there is no such coefficient.
         """
-        amplitudes = [self.amplitudes[q] for q in self.seeds]
-        orders = range(self.order + 1)
-        return tuple(self.series.harmonic_sums(amplitudes, k) for k in orders)
+        chosen = self.origin.chosen_amplitudes()
+        if chosen is not None:
+            return dict(zip(self.seeds, chosen, strict=True))
+        units = np.eye(len(self.seeds), dtype=np.int64)
+        found = {}
+        for q, unit in zip(self.seeds, units, strict=True):
+            own = (self.harmonics == unit).all(axis=1) | (self.harmonics == -unit).all(
+                axis=1
+            )
+            value = self.cosines[own, self.column(q)].sum()
+            found[q] = (
+                float(value) if self.digits is None else with_digits(value, self.digits)
+            )
+        return found
+
+    @property
+    def stands(self) -> bool:
+        """Whether it is one of standing waves on a ring, as `unfold` makes them."""
+        return self.chain.periodic and not self.travels
+
+    @property
+    def numbers(self) -> Arithmetic:
+        """The arithmetic of the results."""
+        return DOUBLES if self.digits is None else MULTIPRECISION
+
+    def _context(self) -> Any:
+        return self.numbers.context(self.digits)
 
     @cached_property
-    def _terms(self) -> tuple[Ints, Numbers]:
-        """Harmonics (H, s) and cosine coefficients (H, C), all orders summed."""
-        parts = self.terms_by_order[: self.order + 1]
-        keys = [self.series.grading.harmonic_keys(nu) for nu, _ in parts]
-        _, first, index = np.unique(
-            np.concatenate(keys), return_index=True, return_inverse=True
+    def _omega(self) -> Numbers:
+        return np.array([self.numbers.number(w) for w in self.frequencies])
+
+    @cached_property
+    def _columns(self) -> Columns:
+        """What its coefficients stand for."""
+        return columns_of(self.chain, self.seeds, self.harmonics, travels=self.travels)
+
+    @cached_property
+    def _rates(self) -> Numbers:
+        """nu.omega of every harmonic; shape (H,)."""
+        return np.asarray(self.harmonics @ self._omega)
+
+    # solutions of one angle
+
+    @property
+    def omega(self) -> dict[int, Fraction]:
+        """The frequencies by seed, as the amplitudes are; exact."""
+        return dict(zip(self.seeds, self.frequencies, strict=True))
+
+    @property
+    def seed(self) -> int:
+        """The seed mode of a solution of one angle; raises InputError for more."""
+        return self._only("seed", self.seeds)
+
+    @property
+    def frequency(self) -> Fraction:
+        """omega of a solution of one angle, exact; raises InputError for more."""
+        return self._only("frequency", self.frequencies)
+
+    @property
+    def amplitude(self) -> Any:
+        """A of a solution of one angle, the coefficient of cos(omega t + phi) in Q_seed.
+
+        Raises InputError for more.
+        """
+        return self._only("amplitude", tuple(self.amplitudes.values()))
+
+    def by_harmonic(self) -> Numbers:
+        """Coefficients of a solution of one angle by the number n of the harmonic, 0 .. H.
+
+        Row n belongs to cos(n (omega t + phi)); shape (H+1, C). Raises InputError for more
+        angles.
+        """
+        self._only("harmonics", self.seeds)
+        n = np.abs(self.harmonics[:, 0])
+        table = self.numbers.zeros((max(int(n.max()), 1) + 1, self.cosines.shape[1]))
+        table[n] = self.cosines
+        return table
+
+    def column(self, q: int) -> int:
+        """Which of the columns of coefficients belongs to the mode q at its own harmonic."""
+        return self._columns.column(q)
+
+    def _only(self, name: str, values: tuple[Value, ...]) -> Value:
+        if len(self.seeds) == 1:
+            return values[0]
+        advice = "use seeds, frequencies, amplitudes, harmonics and cosines"
+        raise InputError(
+            name, f"of {len(self.seeds)} angles", "that of a solution of one angle", advice
         )
+
+    # along the orbit
+
+    def in_doubles(self) -> Torus:
+        """The same solution with its coefficients rounded to doubles."""
+        phases = {q: float(phi) for q, phi in self.phases.items()}
+        cosines = self.cosines.astype(float)
+        return Torus(
+            self.chain,
+            self.seeds,
+            self.frequencies,
+            self.harmonics,
+            cosines,
+            phases,
+            travels=self.travels,
+            warnings=self.warnings,
+        )
+
+    def state(self, t: float = 0.0) -> tuple[Floats, Floats]:
+        """Mode coordinates Q and momenta P at a time, in doubles, for `integrate` to start from.
+
+        t : a number, dimensionless. Returns two arrays (N-1,). Raises InputError for many times.
+
+        >>> from symfpu import Chain, breather_at_amplitude, integrate
+        >>> orbit = breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4")
+        >>> integrate(orbit.chain, *orbit.state(), 10.0, step=0.1).energy_error < 1e-10
+        True
+        """
+        if np.ndim(t):
+            raise InputError(
+                "t",
+                t,
+                "one finite number",
+                "take Q(t) and P(t) for many times",
+            )
+        kind = self.chain.kind_of_ends.mode_type
+        return self.Q(t).astype(kind), self.P(t).astype(kind)
+
+    def Q(self, t: ArrayLike) -> Numbers:
+        """Mode coordinates Q_q(t); t a number or an array (T,), result (N-1,) or (T, N-1)."""
+        return with_digits(self._Q(t), self.digits)
+
+    def _Q(self, t: ArrayLike) -> Numbers:
+        return self._along(t, self.cosines)
+
+    def P(self, t: ArrayLike) -> Numbers:
+        """Mode momenta P_q(t) = dQ_q/dt.
+
+        t : a number or an array (T,), result (N-1,) or (T, N-1).
+        """
+        return with_digits(self._P(t), self.digits)
+
+    def _P(self, t: ArrayLike) -> Numbers:
         with self._context():
-            columns = parts[0][1].shape[1]
-            values = inside(self.numbers).zeros((len(first), columns))
-            at = 0
-            for nu, part in parts:
-                values[index[at : at + len(nu)]] += part
-                at += len(nu)
-        harmonics = np.concatenate([nu for nu, _ in parts])[first]
-        moving = columns_of(self.chain, self.seeds, harmonics, travels=self.travels).moving
-        coefficients = with_digits(at_the_face(values[moving]), self.digits)
-        return harmonics[moving], coefficients
+            velocities = -self._rates[:, None] * self.cosines
+            return self._along(t, velocities, sine=True)
 
-    @property
-    def harmonics(self) -> Ints:
-        """The harmonics nu of the solution, one of each pair +-nu; shape (H, s)."""
-        return self._terms[0]
+    def _along(self, t: ArrayLike, coefficients: Numbers, *, sine: bool = False) -> Numbers:
+        """Modes of coefficients of cos(nu.theta), or of sin(nu.theta), at times."""
+        with self._context():
+            times = self._times(t)
+            theta = times.reshape(-1, 1) * self._omega + self._offsets()
+            [values] = self._at_angles(theta, [coefficients], sine=sine)
+            return values[0] if times.ndim == 0 else values
 
-    @property
-    def cosines(self) -> Numbers:
-        """The coefficients c_q[nu] of cos(nu.theta) in Q_q, (H, N-1); of waves (H, 1)."""
-        return self._terms[1]
+    def _times(self, t: ArrayLike) -> Numbers:
+        try:
+            times = self.numbers.array(t)
+        except (TypeError, ValueError) as error:
+            raise InputError(
+                "t", t, "a finite number or an array of them", "pass real numbers"
+            ) from error
+        if times.ndim > 1 or not self.numbers.finite(times):
+            allowed = "a finite number or a one-dimensional array of them"
+            raise InputError("t", t, allowed, "flatten it")
+        return times
+
+    def _offsets(self) -> Numbers:
+        return self.numbers.array([self.phases[q] for q in self.seeds])
+
+    def _at_angles(
+        self, theta: Numbers, tables: Sequence[Numbers], *, sine: bool = False
+    ) -> list[Numbers]:
+        """Modes (P, N-1) of tables of coefficients at angles (P, s)."""
+        step = max(1, CHUNK // len(self.harmonics))
+        parts = []
+        for i in range(0, len(theta), step):
+            angles = theta[i : i + step] @ self.harmonics.T
+            parts.append(self._columns.modes(angles, tables, self.numbers, sine=sine))
+        if not parts:
+            kind = self.chain.kind_of_ends.mode_type
+            return [np.zeros((0, self.chain.N - 1), dtype=kind) for _ in tables]
+        return [np.concatenate(found) for found in zip(*parts, strict=True)]
+
+    def x(self, t: ArrayLike) -> Numbers:
+        """Displacements x_1 .. x_(N-1); t a number or (T,), result (N-1,) or (T, N-1).
+
+        On a ring x_0 .. x_(N-1).
+        """
+        with self._context():
+            return with_digits(self.chain.positions(self._Q(t)), self.digits)
+
+    def p(self, t: ArrayLike) -> Numbers:
+        """Momenta of the particles; t a number or (T,), result (N-1,) or (T, N-1)."""
+        with self._context():
+            return with_digits(self.chain.positions(self._P(t)), self.digits)
+
+    # energies
+
+    def energy(self, t: ArrayLike = 0.0) -> Any:
+        """Total energy H at t, a number or (T,), in the shape of t.
+
+        Constant in time for an exact torus.
+        """
+        with self._context():
+            energy = self.chain.energy(self._Q(t), self._P(t))
+            return with_digits(energy[()], self.digits)
+
+    def harmonic_energies(self, t: ArrayLike = 0.0) -> Numbers:
+        """Harmonic energies E_q(t) (Eq. harmonicene); shape of t with an axis N-1 at the end."""
+        with self._context():
+            energies = self.chain.harmonic_energies(self._Q(t), self._P(t))
+            return with_digits(energies, self.digits)
+
+    def energy_error(self, t: ArrayLike, *, harmonic: bool = False) -> Numbers:
+        """Relative error (E(t) - E(0)) / E(0) of the total energy, or of the harmonic one, sum E_q.
+
+        As in section 3.2.
+        """
+        with self._context():
+            if harmonic:
+                values = self.harmonic_energies(t).sum(axis=-1)
+                start = self.harmonic_energies().sum()
+            else:
+                values, start = self.energy(t), self.energy()
+            return with_digits(np.asarray((values - start) / start), self.digits)
+
+    def average_spectrum(self, T: float | None = None) -> Numbers:
+        """Time averages of the harmonic energies E_q, in closed form; shape (N-1,).
+
+        T : averaging time from t = 0, computed in doubles; None for the infinite-time average,
+        (1/4) sum c^2 ((nu.omega)^2 + Omega^2) over nu != 0 plus the constant term. With the factor
+        1/2 of E_q that the paper's section 3.2 leaves out. On a ring a wave has half of its energy
+        in q and half in -q, and waves of one mode with equal rates interfere.
+        """
+        if T is not None:
+            return self._average_until(T)
+        with self._context():
+            offsets = self.harmonics @ self._offsets()
+            average = self._columns.average_spectrum(
+                self.cosines, self.frequencies, offsets, self.numbers
+            )
+            return with_digits(np.asarray(average), self.digits)
+
+    def _average_until(self, T: float) -> Floats:
+        if not isinstance(T, Real) or not np.isfinite(float(T)) or T <= 0:
+            raise InputError(
+                "T", T, "a positive finite time, or None for infinite", "pass T > 0"
+            )
+        offsets = self.harmonics @ np.array([float(self.phases[q]) for q in self.seeds])
+        cosines = self.cosines.astype(float)
+        return self._columns.average_until(float(T), cosines, self.frequencies, offsets)
+
+    # the equations of motion
+
+    def residuals(self, points: int | None = None) -> Numbers:
+        """Largest |d^2Q_q/dt^2 - force| of each mode on a grid of angles, shape (N-1,).
+
+        Zero for an exact torus.
+
+        points : grid points for each of the s angles; default such that the grid has about 4096.
+        With digits, where doubles cannot see the residual, about 16.
+        """
+        return with_digits(self._residuals(points)[0], self.digits)
+
+    def residual(self, points: int | None = None) -> float:
+        """Largest residual on a grid of angles, over the largest acceleration.
+
+        Infinite where a bond is beyond the wall of its potential there.
+
+        points : grid points for each angle, as for `residuals`.
+        """
+        return self._residual if points is None else self._residual_of(points)
+
+    @cached_property
+    def _residual(self) -> float:
+        """The residual on the default grid, which every sentence on this solution states."""
+        return self._residual_of(None)
+
+    def _residual_of(self, points: int | None) -> float:
+        residuals, largest = self._residuals(points)
+        found = float(residuals.max() / largest)
+        return math.inf if math.isnan(found) else found
+
+    def _residuals(self, points: int | None) -> tuple[Numbers, Any]:
+        if self.digits is not None and points is None:
+            residuals, largest = self.in_doubles()._residuals(None)
+            if residuals.max() > DOUBLES_RESIDUAL * largest:
+                return residuals, largest
+        number = self._grid_points() if points is None else integer(points, "points", 1)
+        with self._context():
+            return self._worst_on_grid(number)
+
+    def _grid_points(self) -> int:
+        """Points for each of the angles by default."""
+        wanted = GRID_POINTS if self.digits is None else GRID_POINTS_DIGITS
+        return points_of_each_angle(wanted, len(self.seeds))
+
+    def _worst_on_grid(self, number: int) -> tuple[Numbers, Any]:
+        """By mode the largest |d^2Q_q/dt^2 - force|, and the largest force.
+
+        The linear force of a harmonic is taken with its second derivative, where the two cancel.
+        """
+        worst = np.zeros(self.chain.N - 1)
+        largest: Any = 0.0
+        squares = self.chain.frequencies(self.numbers) ** 2
+        own = self._columns.linear(self.numbers) ** 2
+        linear = (own - self._rates[:, None] ** 2) * self.cosines
+        for Q, off in self._on_grid([self.cosines, linear], number):
+            anharmonic = self.chain.anharmonic_accelerations(Q)
+            worst = np.maximum(worst, np.abs(off - anharmonic).max(axis=0))
+            largest = max(largest, np.abs(anharmonic - squares * Q).max())
+        return worst, largest
+
+    def _on_grid(self, tables: Sequence[Numbers], number: int) -> Iterator[list[Numbers]]:
+        """Modes of tables of coefficients at the angles of the grid, in its portions, or all."""
+        columns, small = self._columns, number ** len(self.seeds) <= TRANSFORMED
+        if self.digits is None and small and isinstance(columns, ModeColumns):
+            yield columns.modes_on_grid(tables, number)
+            return
+        for theta in self.angle_grid(number):
+            yield self._at_angles(theta, tables)
+
+    def energy_range(self) -> float:
+        """The range of H over a grid of angles, over its mean: zero for an exact torus."""
+        with self._context():
+            velocities = -self._rates[:, None] * self.cosines
+            energies = []
+            for theta in self.angle_grid(self._grid_points()):
+                [Q] = self._at_angles(theta, [self.cosines])
+                [P] = self._at_angles(theta, [velocities], sine=True)
+                energies.append(self.chain.energy(Q, P))
+            H = np.concatenate(energies)
+            return float((H.max() - H.min()) / abs(H.mean()))
+
+    def angle_grid(self, number: int) -> Iterator[Numbers]:
+        """The tensor grid of angles, radians, in portions (P, s); a shift keeps it off 0 and pi.
+
+        number : of points for each of the s angles; at most MOST_ANGLES points in all.
+        """
+        s = len(self.seeds)
+        each = integer(number, "number", 1)
+        if each**s > MOST_ANGLES:
+            allowed = f"at most {MOST_ANGLES:,} points on the grid of {s} angles"
+            raise InputError("number", each, allowed, "take fewer points for each angle")
+        return self._angles((each,) * s)
+
+    def _angles(self, shape: tuple[int, ...]) -> Iterator[Numbers]:
+        """The points of a grid of this shape, in portions."""
+        points = math.prod(shape)
+        portion = angles_at_once(self.chain)
+        for start in range(0, points, portion):
+            index = np.arange(start, min(start + portion, points))
+            digits = np.stack(np.unravel_index(index, shape), axis=-1)
+            yield 2 * self.numbers.pi * (3 * digits + 1) / (3 * shape[0])
+
+    # as a table
+
+    def _grid(self) -> Grid:
+        seeds, modes = ("seed",), ("mode",)
+        phases = [self.phases[q] for q in self.seeds]
+        amplitudes = [self.amplitudes[q] for q in self.seeds]
+        nu = "factor of the angle of a seed in a harmonic"
+        average = "infinite-time average of the harmonic energy E_q"
+        with self._context():
+            rates = with_digits(self._omega, self.digits)
+            linear = with_digits(self.chain.frequencies(self.numbers), self.digits)
+        columns = self._columns.columns
+        return Grid(
+            axes={
+                "harmonic": list(map(joined, self.harmonics.tolist())),
+                "mode": self.chain.mode_numbers,
+                "seed": self.seeds,
+                **columns,
+            },
+            variables={
+                "nu": Variable(("harmonic", "seed"), self.harmonics, nu),
+                **self._columns.variables(self.cosines),
+                **self.origin.variables(),
+                "frequency": Variable(seeds, rates, "frequency omega_q of a seed"),
+                "amplitude": Variable(
+                    seeds, amplitudes, "coefficient of cos(theta_q) in Q_q"
+                ),
+                "phase": Variable(seeds, phases, "angle at t = 0", RADIANS),
+                "average_energy": Variable(modes, self.average_spectrum(), average),
+                "linear_frequency": Variable(
+                    modes, linear, "Omega_q of small oscillations"
+                ),
+            },
+            attributes=attributes(
+                self,
+                self.chain,
+                seeds=self.seeds,
+                frequencies=self.frequencies,
+                energy=self.energy(),
+                digits=self.digits,
+                warnings=self.warnings,
+            ),
+            rows=("harmonic", *columns),
+            across="seed",
+        )
 
 
-def series_behind(result: object) -> LindstedtSeries:
-    """A series, or that of a torus solved from one; raises InputError for what has none."""
-    if isinstance(result, LindstedtSeries):
-        return result
-    return require_series_torus(result, "series").series
+def angles_at_once(chain: Chain) -> int:
+    """How many angles of a grid are in one portion."""
+    return max(1, min(GRID_POINTS, CHUNK // chain.N))
 
 
-def require_series_torus(torus: object, argument: str = "torus") -> QTorus:
-    """A torus that was solved from a series; raises InputError for any other solution."""
-    if isinstance(torus, QTorus):
-        return torus
-    judge = "a solution without a series is judged by its residual()"
-    advice = f"pass what solve_amplitudes gave; {judge}"
-    raise InputError(
-        argument, type(torus).__name__, "a QTorus, which has its series", advice
-    )
+def points_of_each_angle(wanted: int, s: int) -> int:
+    """Of a grid of s angles that has about so many points."""
+    number: int = round(wanted ** (1 / s))
+    return max(2, min(64, number))
+
+
+def require_solution(solution: object, argument: str) -> Torus:
+    """A torus or a breather; InputError for what is none."""
+    if not isinstance(solution, Torus):
+        advice = "pass what solve_amplitudes, refine or periodic_orbit gave"
+        raise InputError(
+            argument, type(solution).__name__, "a solution: a torus or a breather", advice
+        )
+    return solution
+
+
+def require_fixed_solution(
+    solution: object, argument: str, advice: str = "what takes a ring is in docs/chains.md"
+) -> Torus:
+    """The same of a chain with fixed ends; InputError also for one of a ring, with advice."""
+    found = require_solution(solution, argument)
+    if found.chain.periodic:
+        allowed = "a solution of a chain with fixed ends: this is not known on a ring"
+        raise InputError(argument, f"of {found.chain!r}", allowed, advice)
+    return found
+
+
+def comes_from(torus: object, origin: type[Kind]) -> TypeGuard[Torus[Kind]]:
+    """Whether this is a torus that was made in a way.
+
+    >>> comes_from(3, Origin)
+    False
+    """
+    return isinstance(torus, Torus) and isinstance(torus.origin, origin)
+
+
+def show(result: Any, *names: str) -> None:
+    """Lets numbers in these fields of a frozen result print its digits; for `__post_init__`."""
+    if result.digits is not None:
+        for name in names:
+            shown = with_digits(getattr(result, name), result.digits)
+            object.__setattr__(result, name, shown)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from symfpu.chain.chain import Chain
 from symfpu.numbers.public import public
 from symfpu.tori.columns import half_of
-from symfpu.tori.quasiperiodic import FourierTorus, QuasiPeriodic, require_fixed_solution
+from symfpu.tori.torus import Torus, require_fixed_solution
 
 
 @public
-def unfold(solution: QuasiPeriodic) -> FourierTorus:
+def unfold(solution: Torus) -> Torus:
     """A solution with fixed ends as the odd solution of the ring of twice the length.
 
     solution : any torus or breather of a chain of N bonds; dimensionless. x_0 = x_N = 0 stay at
@@ -18,7 +18,8 @@ def unfold(solution: QuasiPeriodic) -> FourierTorus:
 
     >>> from symfpu import breather_at_amplitude
     >>> unfold(breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4"))
-    FourierTorus(N=16, alpha=0.3, ends='periodic', omega_1=..., A_1=0.4, ... harmonics)
+    Torus(N=16, alpha=0.3, ends='periodic', omega_1=..., A_1=0.4, H=...,
+    ... harmonics, residual ...)
     """
     require_fixed_solution(solution, "solution")
     fixed = solution.chain
@@ -26,14 +27,14 @@ def unfold(solution: QuasiPeriodic) -> FourierTorus:
     return _on(ring, solution)
 
 
-def folded(torus: QuasiPeriodic) -> FourierTorus:
+def folded(torus: Torus) -> Torus:
     """The torus with fixed ends that standing waves of a ring unfold, in doubles."""
     return _on(half_of(torus.chain), torus.in_doubles())
 
 
-def _on(chain: Chain, torus: QuasiPeriodic) -> FourierTorus:
+def _on(chain: Chain, torus: Torus) -> Torus:
     """The same coefficients of another chain."""
-    return FourierTorus(
+    return Torus(
         chain,
         torus.seeds,
         torus.frequencies,

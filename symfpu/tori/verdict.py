@@ -30,16 +30,12 @@ from symfpu.numbers.mpfr import at_the_face, inside
 from symfpu.numbers.public import public
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.amplitudes import (
-    AmplitudeHistory,
-    frequency_orders,
-    steps_of_frequencies,
-)
+from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders, steps_of_frequencies
 from symfpu.tori.best_order import GRID_POINTS, angles_a_seed, some_angles
 from symfpu.tori.columns import Columns, columns_of
-from symfpu.tori.quasiperiodic import DOUBLES_RESIDUAL, GRID_POINTS_DIGITS
+from symfpu.tori.from_series import FromSeries, RootCertificate, require_series_torus
 from symfpu.tori.resummation import pade_poles, resum
-from symfpu.tori.torus import QTorus, RootCertificate, require_series_torus
+from symfpu.tori.torus import DOUBLES_RESIDUAL, GRID_POINTS_DIGITS, Torus
 
 Floats = NDArray[np.float64]
 
@@ -262,7 +258,7 @@ def _short_list(values: Iterable[float]) -> list[float | None]:
 @public
 def assess(
     series: LindstedtSeries,
-    torus: QTorus,
+    torus: Torus[FromSeries],
     *,
     resummed: bool = True,
     progress: Progress | None = None,
@@ -286,13 +282,13 @@ def assess(
     >>> assess(series, solve_amplitudes(series)).word
     'converged'
     """
-    if require_series_torus(torus).series is not series:
+    if require_series_torus(torus).origin.series is not series:
         allowed = "one solved from this series"
         advice = "call solve_amplitudes(series)"
         raise InputError("torus", "of another series", allowed, advice)
     tell = progress or unheard
     passes = 1 if torus.digits is None else 2
-    steps = (torus.order + 1) * passes
+    steps = (torus.origin.order + 1) * passes
     found = _orders(torus, steps, tell)
     evidence = _evidence(torus, found, resummed)
     tell("verdict", 1.0)
@@ -312,7 +308,7 @@ def judged(evidence: Assessment, residual: float, step: int, floor: float) -> As
     return replace(evidence, word=word, reasons=reasons)
 
 
-def _orders(torus: QTorus, steps: int, tell: Progress) -> list[_Order]:
+def _orders(torus: Torus[FromSeries], steps: int, tell: Progress) -> list[_Order]:
     """All orders in doubles; where doubles see no residual any more, in the digits of the torus."""
     found = []
     for k, order in enumerate(_by_order(torus, DOUBLES)):
@@ -325,21 +321,23 @@ def _orders(torus: QTorus, steps: int, tell: Progress) -> list[_Order]:
         for k, order in enumerate(_by_order(torus, MULTIPRECISION)):
             if found[k].residual < DOUBLES_RESIDUAL:
                 found[k] = order
-            tell("verdict", (torus.order + 2 + k) / steps)
+            tell("verdict", (torus.origin.order + 2 + k) / steps)
     return found
 
 
-def _evidence(torus: QTorus, found: list[_Order], resummed: bool) -> Assessment:
+def _evidence(torus: Torus[FromSeries], found: list[_Order], resummed: bool) -> Assessment:
     """All that is measured, without a word yet."""
-    series = torus.series
+    series = torus.origin.series
     residuals = [order.residual for order in found]
     energy_errors = [order.energy_error for order in found]
     terms = [order.largest for order in found if order.largest]
     step = steps_of_frequencies(series)
     orders = frequency_orders(series)
-    history = AmplitudeHistory(series.seeds, orders, torus.history, {})
+    history = AmplitudeHistory(series.seeds, orders, torus.origin.history, {})
     differences = history.differences()
-    root_uncertainty = root_uncertainty_of(torus.amplitudes, torus.history, differences)
+    root_uncertainty = root_uncertainty_of(
+        torus.amplitudes, torus.origin.history, differences
+    )
     sums = {}
     for q in series.seeds:
         moduli = np.array([order.moduli[q] for order in found])
@@ -356,9 +354,9 @@ def _evidence(torus: QTorus, found: list[_Order], resummed: bool) -> Assessment:
         word="undecided",
         best_order=int(np.argmin(residuals)),
         reasons=(),
-        order=torus.order,
-        frequency_order=torus.frequency_order,
-        amplitudes=torus.history,
+        order=torus.origin.order,
+        frequency_order=torus.origin.frequency_order,
+        amplitudes=torus.origin.history,
         differences=differences,
         root_uncertainty=root_uncertainty,
         sums=sums,
@@ -369,7 +367,7 @@ def _evidence(torus: QTorus, found: list[_Order], resummed: bool) -> Assessment:
         residuals=np.array(residuals),
         energy_errors=np.array(energy_errors),
         resummed_residual=resummed_residual,
-        certificate=torus.certificate,
+        certificate=torus.origin.certificate,
         chain=torus.chain,
     )
 
@@ -387,8 +385,8 @@ class _Order(NamedTuple):
     energy_error: float
 
 
-def _by_order(torus: QTorus, numbers: Arithmetic) -> Iterator[_Order]:
-    series, chain = torus.series, torus.chain
+def _by_order(torus: Torus[FromSeries], numbers: Arithmetic) -> Iterator[_Order]:
+    series, chain = torus.origin.series, torus.chain
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     points = GRID_POINTS if numbers is DOUBLES else GRID_POINTS_DIGITS
     number = angles_a_seed(len(torus.seeds), points)
@@ -399,7 +397,9 @@ def _by_order(torus: QTorus, numbers: Arithmetic) -> Iterator[_Order]:
         Q: Any = 0
         P: Any = 0
         second: Any = 0
-        for k, (nu, exact) in enumerate(torus.terms_by_order[: torus.order + 1]):
+        for k, (nu, exact) in enumerate(
+            torus.origin.terms_by_order[: torus.origin.order + 1]
+        ):
             values = exact.astype(float) if numbers is DOUBLES else exact
             _, moduli = series.harmonic_terms(amplitudes, k, absolute=True)
             rates = nu @ omega
@@ -429,7 +429,7 @@ def _seed_sums(
 
 
 def _largest(
-    torus: QTorus,
+    torus: Torus[FromSeries],
     order: int,
     nu: NDArray[np.int64],
     values: Numbers,

@@ -190,7 +190,7 @@ def _by_frequencies(choice: Choice) -> Making:
 def _by_amplitudes(choice: Choice) -> Making:
     amplitudes = _mapping(choice.by_seed)
     making = call("torus_at_amplitudes", "chain", amplitudes, order=str(choice.last_order))
-    lines = [f"torus = {making}", "verdict = assess(torus.series, torus)"]
+    lines = [f"torus = {making}", "verdict = assess(torus.origin.series, torus)"]
     return ["Chain", "assess", "torus_at_amplitudes"], lines
 
 
@@ -206,7 +206,7 @@ def _by_energy(choice: Choice) -> Making:
         order=str(choice.last_order),
         energy_ratio=_mapping(typed),
     )
-    lines = [f"torus = {making}", "verdict = assess(torus.series, torus)"]
+    lines = [f"torus = {making}", "verdict = assess(torus.origin.series, torus)"]
     return ["Chain", "assess", "torus_at_energy"], lines
 
 

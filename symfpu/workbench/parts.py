@@ -152,7 +152,7 @@ def _numbers(found: Solved) -> Numbers:
     ]
     choice, bundle = found.choice, found.choice.bundle
     return Numbers(
-        kind=type(torus).__name__,
+        kind=torus.origin.name,
         seeds=tuple(seeds),
         mu=chain.mu,
         energy=float(torus.energy()),

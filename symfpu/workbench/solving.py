@@ -9,15 +9,15 @@ from symfpu.bundles.bundle import load
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import decimal
-from symfpu.refinement.refined_torus import RefinedTorus
+from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.at_energy import torus_at_energy
 from symfpu.tori.frequencies import torus_at_amplitudes
-from symfpu.tori.quasiperiodic import QuasiPeriodic
-from symfpu.tori.torus import QTorus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus, comes_from
 from symfpu.tori.verdict import Assessment, assess
 from symfpu.workbench.choice import AMPLITUDES, ENERGY, FREQUENCIES, Choice
 
@@ -27,12 +27,12 @@ class Solved:
     """A torus, its series where it has one, and that of Newton's method where it was wished."""
 
     choice: Choice
-    torus: QuasiPeriodic
+    torus: Torus
     series: LindstedtSeries | None
-    refined: RefinedTorus | None = None
+    refined: Torus[Newton] | None = None
 
     @property
-    def best(self) -> QuasiPeriodic:
+    def best(self) -> Torus:
         """What is kept and exported."""
         return self.torus if self.refined is None else self.refined
 
@@ -97,10 +97,10 @@ def _solved(choice: Choice, near: Solved | None, tell: Progress) -> Solved:
         )
     else:
         raise InputError("given", choice.given, "a known one", "choose it on the page")
-    return Solved(choice, torus, torus.series)
+    return Solved(choice, torus, torus.origin.series)
 
 
-def _start(choice: Choice, near: Solved | None) -> QTorus | None:
+def _start(choice: Choice, near: Solved | None) -> Torus[FromSeries] | None:
     """The torus before, where amplitudes or energies lead from it to the wished one."""
     if near is None or near.choice.bundle or near.choice.given == FREQUENCIES:
         return (
@@ -109,19 +109,19 @@ def _start(choice: Choice, near: Solved | None) -> QTorus | None:
     before = near.torus
     seeds = set(choice.seed_modes)
     same = before.chain == choice.chain and set(before.seeds) == seeds
-    if not same or not isinstance(before, QTorus):
+    if not same or not comes_from(before, FromSeries):
         return None
-    return before if before.order == choice.last_order else None
+    return before if before.origin.order == choice.last_order else None
 
 
 def judged(found: Solved, progress: Progress | None = None) -> Assessment | None:
     """The verdict on the series; None where there is none."""
-    if isinstance(found.torus, QTorus):
-        return assess(found.torus.series, found.torus, progress=progress)
+    if comes_from(found.torus, FromSeries):
+        return assess(found.torus.origin.series, found.torus, progress=progress)
     return None
 
 
-def described(torus: QuasiPeriodic, bundle: str) -> Choice:
+def described(torus: Torus, bundle: str) -> Choice:
     """A choice that says what a torus from a file is; the file itself stays what is shown."""
     law: dict[str, Any] = {"alpha": "0", "beta": "0", "potential": ""}
     law |= torus.chain.typed_law

@@ -113,7 +113,7 @@ def test_an_even_potential_with_more_harmonics_than_a_block_has():
 
 def test_what_is_not_refined_is_refused():
     torus = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.8"}, 4)
-    rough = symfpu.FourierTorus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines)
+    rough = symfpu.Torus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines)
     precise = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.8"}, 4, digits=20)
     for solution in (torus, rough, precise):
         with pytest.raises(symfpu.InputError, match=r"residual .*: allowed is .* below 1e-08.*refine\(solution\)"):

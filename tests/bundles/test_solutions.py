@@ -10,10 +10,8 @@ import pytest
 from symfpu import (
     BundleError,
     Chain,
-    FourierTorus,
     InputError,
-    PeriodicOrbit,
-    PreciseTorus,
+    Torus,
     lindstedt,
     refine,
     solve_amplitudes,
@@ -179,7 +177,7 @@ def test_numbers_of_many_digits_keep_every_bit(tmp_path):
     precise = CASES["PreciseTorus, breather"]()
     cosines = np.array([values, values[::-1]], dtype=object)
     harmonics = precise.harmonics[:2]
-    torus = FourierTorus(precise.chain, precise.seeds, precise.frequencies, harmonics, cosines, {3: mpmath.mpf("0.25")}, 40)
+    torus = Torus(precise.chain, precise.seeds, precise.frequencies, harmonics, cosines, {3: mpmath.mpf("0.25")}, 40)
     loaded = load(save(tmp_path / "torus", torus)).torus
     assert [x._mpf_ for x in loaded.cosines.flat] == [x._mpf_ for x in cosines.flat]
     assert loaded.phases == torus.phases

@@ -4,7 +4,7 @@ from functools import cache
 
 import mpmath
 
-from symfpu import Chain, FourierTorus, refine, torus_at_amplitudes
+from symfpu import Chain, Torus, refine, torus_at_amplitudes
 
 AMPLITUDES = {1: "0.2", 2: "0.1"}
 
@@ -20,7 +20,7 @@ def one_off(exact, change):
     """The torus with one coefficient changed, of mode 2 in the harmonic (2, 0)."""
     moved = exact.cosines.copy()
     moved[exact.harmonics.tolist().index([2, 0]), 1] += change
-    return FourierTorus(exact.chain, exact.seeds, exact.frequencies, exact.harmonics, moved, exact.phases)
+    return Torus(exact.chain, exact.seeds, exact.frequencies, exact.harmonics, moved, exact.phases)
 
 
 def entries(series):

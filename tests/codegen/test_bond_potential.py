@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import sympy
 
-from symfpu import Chain, FourierTorus, compile_evaluator, export
+from symfpu import Chain, Torus, compile_evaluator, export
 from symfpu.codegen.bond_potential import HIGHEST_POWER, REMAINDER, STRETCH, bond_potential
 from tests.codegen.compilers import program, self_test
 from tests.tolerances import BOND_OF_FORTY_FIVE, OF_LARGEST
@@ -66,7 +66,7 @@ def moving(typed, size):
     """A torus whose bonds go as far as the size, on no orbit: its energy is that of the chain all the same."""
     chain = Chain(5, potential=typed)
     harmonics, cosines = np.array([[1], [2]]), np.array([[size, 0, 0.25 * size, 0], [0, 0.5 * size, 0, 0.125 * size]])
-    return FourierTorus(chain, (1,), (Fraction(5, 8),), harmonics, cosines, {1: 0.5})
+    return Torus(chain, (1,), (Fraction(5, 8),), harmonics, cosines, {1: 0.5})
 
 
 LARGE = {"toda:1/2": 8.0, "lj:12,6": 0.25, "morse:2": 1.0, "expr:cosh(r)-1": 8.0, "poly:1/3,0,1/5": 1.0}

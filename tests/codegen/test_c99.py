@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, FourierTorus, QTorus, lindstedt
+from symfpu import Chain, Torus, lindstedt
 from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from tests.codegen.compilers import c_self_test, compile_c, library_of, pointer
@@ -71,7 +71,7 @@ def call(library, name, t, phases, shape):
 def at_rest():
     """A torus of a chain that does not move."""
     harmonics, cosines = np.zeros((1, 2), dtype=int), np.zeros((1, 4))
-    return FourierTorus(Chain(5, alpha=1), (1, 2), (Fraction(5, 8), Fraction(19, 16)), harmonics, cosines, {1: 0.0, 2: 0.0})
+    return Torus(Chain(5, alpha=1), (1, 2), (Fraction(5, 8), Fraction(19, 16)), harmonics, cosines, {1: 0.0, 2: 0.0})
 
 
 @pytest.mark.long

@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import FourierTorus
+from symfpu import Torus
 from symfpu.codegen.gallery import GALLERY
 from tests.codegen.compilers import program
 from tests.tolerances import HUNDRED_ROUNDINGS, TEN_ROUNDINGS
@@ -44,7 +44,7 @@ def of_series(torus):
     omega = terms.sum(axis=0)
     free = replace(torus, amplitudes={1: A[0], 2: A[1]}, order=orders["order"])
     exact = tuple(Fraction(float(w)) for w in omega)
-    moved = FourierTorus(torus.chain, torus.seeds, exact, free.harmonics, free.cosines, {1: 0.5, 2: -1.0}, torus.digits)
+    moved = Torus(torus.chain, torus.seeds, exact, free.harmonics, free.cosines, {1: 0.5, 2: -1.0}, torus.digits)
     return [moved.Q(100.0)[0], omega[1], slopes.sum(axis=0)[0, 1] * 2 * A[1]]
 
 

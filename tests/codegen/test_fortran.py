@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, QTorus, lindstedt
+from symfpu import Chain, lindstedt
 from symfpu.codegen.languages.fortran import FORTRAN
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from tests.codegen.compilers import STRICT_FORTRAN, program

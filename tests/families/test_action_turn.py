@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from symfpu import Chain, FourierTorus, family, normal_modes, refine
+from symfpu import Chain, Torus, family, normal_modes, refine
 from symfpu.action_angle.newton_twist import action_turn
 from symfpu.normal.search import followed_modes
 from tests.tolerances import EXTRAPOLATED_ONSET
@@ -24,7 +24,7 @@ def with_a_second_seed(orbit, q):
     harmonics = np.concatenate([orbit.harmonics @ [[1, 0]], np.stack([signs * nu, signs], axis=1)])
     frequencies = (orbit.frequency, Fraction(mode.sigma))
     cosines = np.concatenate([orbit.cosines, p])
-    return FourierTorus(orbit.chain, (orbit.seed, q), frequencies, harmonics, cosines, {orbit.seed: 0.0, q: 0.0})
+    return Torus(orbit.chain, (orbit.seed, q), frequencies, harmonics, cosines, {orbit.seed: 0.0, q: 0.0})
 
 
 @pytest.mark.long

@@ -46,7 +46,7 @@ def precise(case):
 
 def torus_of(breather):
     harmonics = np.arange(len(breather.cosines))[:, None]
-    return symfpu.FourierTorus(breather.chain, (breather.seed,), (breather.frequency,), harmonics, breather.cosines, {breather.seed: 0.0})
+    return symfpu.Torus(breather.chain, (breather.seed,), (breather.frequency,), harmonics, breather.cosines, {breather.seed: 0.0})
 
 
 def rows(solution):
@@ -178,7 +178,7 @@ def test_a_resonant_divisor_leaves_its_mode_unknown():
     assert chain.linear_frequency(1) == 1
     cosines = np.zeros((6, 2))
     cosines[1, 0] = 0.1
-    torus = symfpu.FourierTorus(chain, (1,), (Fraction(1, 3),), np.arange(6)[:, None], cosines, {1: 0.0})
+    torus = symfpu.Torus(chain, (1,), (Fraction(1, 3),), np.arange(6)[:, None], cosines, {1: 0.0})
     assert spectrum_floor(torus)[0] > 1e20
 
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symfpu import Chain, FourierTorus, refine, torus_at_amplitudes
+from symfpu import Chain, Torus, refine, torus_at_amplitudes
 from symfpu.refinement.conditions import (
     Amplitude,
     AmplitudeRatio,
@@ -44,7 +44,7 @@ class State:
         self.cosines, self.shifts = c.astype(np.longdouble), np.array([0.01, -0.02, 0.03], dtype=np.longdouble)
         omega = self.equation.seed_frequencies + self.shifts
         frequencies = tuple(Fraction(float(w)) for w in omega)
-        self.torus = FourierTorus(CHAIN, SEEDS, frequencies, self.equation.harmonics, c, dict.fromkeys(SEEDS, 0.0))
+        self.torus = Torus(CHAIN, SEEDS, frequencies, self.equation.harmonics, c, dict.fromkeys(SEEDS, 0.0))
 
     def value(self, condition, cosines=None, shifts=None):
         return condition.value(self.equation, self.cosines if cosines is None else cosines, self.shifts if shifts is None else shifts)

@@ -57,7 +57,7 @@ def seeds_alone(chain, seeds, frequencies, amplitudes):
     """Plain waves, as a guess where no series is."""
     units = np.eye(len(seeds), dtype=np.int64)
     omega = tuple(map(Fraction, frequencies))
-    return symfpu.FourierTorus(chain, seeds, omega, units, np.array(amplitudes, dtype=float)[:, None], travels=True)
+    return symfpu.Torus(chain, seeds, omega, units, np.array(amplitudes, dtype=float)[:, None], travels=True)
 
 
 @pytest.mark.parametrize("name", ALL)

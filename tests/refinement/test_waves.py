@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu import FourierTorus
+from symfpu import Torus
 from symfpu.refinement.conditions import Amplitude, AmplitudeRatio, Energy, EnergyRatio, FrequencyShift
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Lattice, places_of
@@ -43,7 +43,7 @@ def torus(law):
     equation, c, shifts = made(law, 1)
     moving = equation.mask[:, 0]
     omega = tuple(map(Fraction, map(float, equation.seed_frequencies + shifts)))
-    return FourierTorus(equation.chain, SEEDS, omega, equation.harmonics[moving], c[moving].astype(float), travels=True)
+    return Torus(equation.chain, SEEDS, omega, equation.harmonics[moving], c[moving].astype(float), travels=True)
 
 
 @pytest.mark.parametrize("law", ["both", "even"])

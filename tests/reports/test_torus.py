@@ -7,8 +7,9 @@ import mpmath
 import numpy as np
 import pytest
 
+from symfpu.reports.solution import solution_record
 from symfpu import Chain, assess, lindstedt, solve_amplitudes
-from symfpu.reports.torus import assessment_text, torus_record
+from symfpu.reports.series import assessment_text
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, FourierTorus, integrate, packet_state, refine, torus_near
+from symfpu import Chain, Torus, integrate, packet_state, refine, torus_near
 from tests.tolerances import AT_THE_START, COMBINATION_HEIGHT, FALL_BY_AN_ANGLE
 
 pytestmark = pytest.mark.long
@@ -51,7 +51,7 @@ FEW = 4000  # harmonics: residuals of some 1e-5, below the distances that are co
 def at_rest(torus):
     """With phases 0 and pi."""
     phases = {q: math.pi * round(float(x) / math.pi) for q, x in torus.phases.items()}
-    return FourierTorus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines, phases)
+    return Torus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines, phases)
 
 
 def with_mode_6(torus):
@@ -64,7 +64,7 @@ def with_mode_6(torus):
     row[0, 5] = abs(START_OF_MODE_6)
     omega = Fraction(float(CHAIN.linear_frequency(6)) + SHIFT_OF_MODE_6)
     phases = dict(torus.phases) | {6: math.pi}
-    return FourierTorus(CHAIN, (*torus.seeds, 6), (*torus.frequencies, omega), harmonics, np.concatenate([torus.cosines, row]), phases)
+    return Torus(CHAIN, (*torus.seeds, 6), (*torus.frequencies, omega), harmonics, np.concatenate([torus.cosines, row]), phases)
 
 
 def test_up_to_six_angles_none_is_the_last_of_fig_9():

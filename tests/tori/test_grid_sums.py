@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symfpu import Chain, FourierTorus
+from symfpu import Chain, Torus
 from symfpu.tori import quasiperiodic
 from tests.tolerances import THOUSAND_ROUNDINGS
 
@@ -17,7 +17,7 @@ def test_a_residual_is_that_of_angles_one_by_one(points, monkeypatch):
     draws = np.random.default_rng(2)
     harmonics = np.array([[1, 0], [0, 1], [2, -1], [3, 4], [0, 0]])
     cosines = draws.normal(scale=0.1, size=(5, CHAIN.N - 1))
-    torus = FourierTorus(CHAIN, (1, 2), (Fraction("0.21"), Fraction("0.43")), harmonics, cosines, {1: 0.0, 2: 0.0})
+    torus = Torus(CHAIN, (1, 2), (Fraction("0.21"), Fraction("0.43")), harmonics, cosines, {1: 0.0, 2: 0.0})
     at_once = torus.residuals(points)
     monkeypatch.setattr(quasiperiodic, "TRANSFORMED", 0)
     assert at_once == pytest.approx(torus.residuals(points), rel=THOUSAND_ROUNDINGS)

@@ -223,4 +223,4 @@ STRANGE = {
 def test_coefficients_of_another_kind_of_torus_are_refused(name):
     chain, seeds, columns, how, argument = STRANGE[name]
     with pytest.raises(InputError, match=f"^{argument} = "):
-        symfpu.FourierTorus(chain, seeds, (Fraction(3, 4),), np.array([[1]]), np.full((1, columns), 0.1), **how)
+        symfpu.Torus(chain, seeds, (Fraction(3, 4),), np.array([[1]]), np.full((1, columns), 0.1), **how)

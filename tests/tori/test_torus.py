@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, QTorus, lindstedt, solve_amplitudes
+from symfpu import Chain, InputError, lindstedt, solve_amplitudes
 from symfpu.tori.columns import mean_cosine
 from tests.tolerances import RESIDUAL_ROUNDING, ROUNDING, SLOPE
 

@@ -1,4 +1,4 @@
-"""A torus and the verdict on its series, for JSON and for the terminal."""
+"""A series and the verdict on it, for JSON and for the terminal."""
 
 from __future__ import annotations
 
@@ -6,32 +6,12 @@ import math
 from typing import Any
 
 from symfpu.chain.length import label_entry
-from symfpu.reports.solution import frequencies_record, solution_record
-from symfpu.reports.tables import GAP, fifteen_digits, number_text, text_table
+from symfpu.frames.attributes import exact_text
+from symfpu.reports.tables import GAP, fifteen_digits, text_table
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.torus import QTorus
 from symfpu.tori.verdict import Assessment
 
 SHOWN_ORDERS = 10  # of the evidence, about
-
-
-def torus_record(torus: QTorus, assessment: Assessment | None = None) -> dict[str, Any]:
-    """A torus for JSON: keys of the command line, numbers of more than 15 digits as strings."""
-    series = torus.series
-    digits = torus.digits
-    certificate = torus.certificate
-    record = solution_record(torus)
-    record["order"] = torus.order
-    record["frequency_order"] = torus.frequency_order
-    record["guard_digits"] = None if digits is None else series.guard_digits
-    record["certified"] = None if certificate is None else certificate.certified
-    record["history"] = _history(torus)
-    record["root_residual"] = fifteen_digits(torus.root_residual)
-    record["smallest_divisors"] = _divisor_records(series)
-    if assessment is not None:
-        record["verdict"] = assessment.headline
-        record["assessment"] = assessment.record()
-    return record
 
 
 def series_record(series: LindstedtSeries) -> dict[str, Any]:
@@ -41,19 +21,18 @@ def series_record(series: LindstedtSeries) -> dict[str, Any]:
     record["frequencies"] = frequencies_record(series)
     record["order"] = series.order
     record["digits"] = series.digits
-    record["smallest_divisors"] = _divisor_records(series)
+    record["smallest_divisors"] = divisor_records(series)
     return record
 
 
-def _history(torus: QTorus) -> dict[str, list[str]]:
-    """Amplitudes of all seeds by frequency order."""
-    history = {}
-    for k, values in torus.history.items():
-        history[str(k)] = [number_text(a, torus.digits) for a in values]
-    return history
+def frequencies_record(solution: Any) -> dict[str, str] | None:
+    """By seed, exact; of a series, too: None where none are chosen."""
+    if solution.frequencies is None:
+        return None
+    return {str(q): exact_text(w) for q, w in solution.omega.items()}
 
 
-def _divisor_records(series: LindstedtSeries) -> list[dict[str, Any]]:
+def divisor_records(series: LindstedtSeries) -> list[dict[str, Any]]:
     records = []
     for divisor in series.smallest_divisors:
         record: dict[str, Any] = {"size": fifteen_digits(divisor.size)}
