@@ -151,7 +151,7 @@ def compile_evaluator(torus: Torus, *, backend: str | None = None) -> Evaluator:
     'c' finds no compiler, or with the compiler's first line if it fails.
 
     >>> from symfpu.chain.chain import Chain
-    >>> from symfpu.tori.quasiperiodic import Torus
+    >>> from symfpu.tori.torus import Torus
     >>> from fractions import Fraction
     >>> cosines = np.array([[1.0, 0.0, 0.0]])
     >>> chain, omega, harmonics = Chain(4, alpha=1), Fraction(1, 2), np.array([[1]])

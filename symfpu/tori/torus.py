@@ -49,6 +49,7 @@ GRID_POINTS_DIGITS = 16  # the same for numbers of many digits
 SHOWN_DIGITS = 40  # of amplitudes, at most, in print
 
 
+@dataclass(frozen=True, repr=False)
 class Origin:
     """How a torus was made. Classes of it keep what only that way of making one knows.
 

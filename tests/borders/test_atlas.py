@@ -102,7 +102,7 @@ def test_a_border_is_where_the_radius_is_one():
     assert below < found["energy"] < above
     assert math.log(above / below) <= WIDTH
     tori = [torus_at_energy(BETA, (7,), H, harmonic=False, order=4) for H in (below, above)]
-    radii = [assess(torus.series, torus).pole_radius for torus in tori]
+    radii = [assess(torus.origin.series, torus).pole_radius for torus in tori]
     assert radii[0] > 1 > radii[1]
     assert tori[0].energy() == pytest.approx(below, rel=SIX_DIGITS)
 

@@ -37,7 +37,7 @@ def test_the_digits_continue_those_of_doubles(chain, seed, frequency, digits):
     assert precise.digits == digits
     rounded = precise.by_harmonic()[: len(orbit.cosines)].astype(float)
     assert rounded == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES * np.max(np.abs(orbit.cosines)))
-    assert precise.bound < mpmath.mpf(10) ** -digits
+    assert precise.origin.bound < mpmath.mpf(10) ** -digits
     assert 0 < precise.residual(3) < mpmath.mpf(10) ** (-digits - 5)  # at angles where nothing was collocated
     assert np.max(np.abs(precise.cosines[-1])) < mpmath.mpf(10) ** (-digits - 5)
 
@@ -48,7 +48,7 @@ def test_the_bound_is_above_the_residual():
     precise = periodic_orbit_digits(orbit, 30)
     t = np.linspace(0, 2 * np.pi / float(orbit.frequency), 1001)
     largest = np.max(np.abs(orbit.chain.accelerations(orbit.Q(t))))
-    assert replace(precise, digits=80).residuals(7).max() < precise.bound * largest < BOUND_OF_FORTY
+    assert replace(precise, digits=80).residuals(7).max() < precise.origin.bound * largest < BOUND_OF_FORTY
 
 
 def test_duffing_to_many_digits():
@@ -71,7 +71,7 @@ def test_toda_has_the_energy_of_the_spectral_curve():
     precise = periodic_orbit_digits(periodic_orbit(chain, 1, "0.78"), 30)
     exact = toda_torus(chain, (1,), frequencies=("0.78",), digits=35)
     assert abs(precise.energy() / exact.energy - 1) < ORACLE
-    assert precise.bound < ORACLE
+    assert precise.origin.bound < ORACLE
 
 
 @pytest.mark.long
@@ -84,7 +84,7 @@ def test_closed_laws_to_many_digits(text, amplitude):
     precise = periodic_orbit_digits(orbit, 40, amplitude=amplitude)
     rounded = precise.by_harmonic()[: len(orbit.cosines)].astype(float)
     assert rounded == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES * np.max(np.abs(orbit.cosines)))
-    assert precise.bound < mpmath.mpf(10) ** -40
+    assert precise.origin.bound < mpmath.mpf(10) ** -40
     assert 0 < precise.residual(3) < mpmath.mpf(10) ** -45
 
 
@@ -147,7 +147,7 @@ def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
     assert any(label.startswith("step 3: residual 1e-2") for label in heard)
     more = periodic_orbit_digits(orbit, 50, file=file)
     fewer_first = periodic_orbit_digits(again, 50)
-    assert more.sweeps > again.sweeps
+    assert more.origin.sweeps > again.origin.sweeps
     with mpmath.workdps(80):
         for found in (more, fewer_first):
             assert np.max(np.abs(found.cosines[: len(again.cosines)] - again.cosines)) < mpmath.mpf(10) ** -30

@@ -41,7 +41,7 @@ def test_harmonic_balance_shooting_and_newton_on_tori_agree(law, N, seed):
 def test_polynomials_of_any_degree_have_digits(law):
     orbit = breather_at_amplitude(Chain(6, potential=law), 2, LAWS[law])
     precise = periodic_orbit_digits(orbit, 40)
-    assert precise.bound < TRANSFORM_OF_FORTY
+    assert precise.origin.bound < TRANSFORM_OF_FORTY
     assert precise.by_harmonic().astype(float)[: len(orbit.cosines)] == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES)
     # by another route: mpf at the working precision, between the points of the sweeps
     assert precise.residual(7) < TRANSFORM_OF_FORTY

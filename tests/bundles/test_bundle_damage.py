@@ -147,11 +147,11 @@ class Bomb:
 
 
 CHANGES = {
-    "newer": (lambda m, b: b.update(schema=8), r"newer symfpu \(schema 8; this one reads 7\); update symfpu"),
-    "older": (lambda m, b: b.update(schema=6), r"is of an older format \(schema 6; this symfpu reads 7\); compute it again"),
-    "newer without a digest": (lambda m, b: b.update(schema=8, arrays={}), "newer symfpu"),
+    "newer": (lambda m, b: b.update(schema=9), r"newer symfpu \(schema 9; this one reads 8\); update symfpu"),
+    "older": (lambda m, b: b.update(schema=7), r"is of an older format \(schema 7; this symfpu reads 8\); compute it again"),
+    "newer without a digest": (lambda m, b: b.update(schema=9, arrays={}), "newer symfpu"),
     "schema 0": (lambda m, b: b.update(schema=0), "schema"),
-    "schema as text": (lambda m, b: b.update(schema="7"), "schema"),
+    "schema as text": (lambda m, b: b.update(schema="8"), "schema"),
     "foreign format": (lambda m, b: b.update(format="another"), "is not a symfpu bundle"),
     "missing array": (lambda m, b: m.pop("corrections.npy"), "corrections"),
     "undeclared array": (lambda m, b: b["arrays"].pop("corrections"), "corrections"),

@@ -73,7 +73,7 @@ def test_refine_to_digits(capsys, solved, tmp_path):
     assert "in 18 digits" in out
     assert "residual below" in out
     record = answer(capsys, "refine", fewer, "--digits", "22", "-o", more)
-    assert (record["kind"], record["digits"]) == ("PreciseTorus", 22)
+    assert (record["origin"], record["digits"]) == ("IterativeRefinement", 22)
     assert record["residual"] < float(record["residual_bound"]) < COMMANDED_RESIDUAL**2
     assert float(record["amplitudes"]["1"]) == 0.1
     assert load(more).torus.frequencies == load(fewer).torus.frequencies

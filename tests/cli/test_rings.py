@@ -52,7 +52,7 @@ def test_breather_finds_a_wave_with_its_multipliers(capsys, tmp_path):
     kept = tmp_path / "wave.symfpu"
     words = split("breather -N 5 --potential toda:1/2 --ends periodic --seed=-2 --amplitude 0.5 --multipliers")
     record = answer(capsys, *words, "-o", kept)
-    assert (record["ends"], record["seeds"], record["stable"], record["kind"]) == ("periodic", [-2], True, "RefinedTorus")
+    assert (record["ends"], record["seeds"], record["stable"], record["origin"]) == ("periodic", [-2], True, "Newton")
     assert record["amplitudes"] == {"-2": "0.5"}
     assert "seed -2" in shown(capsys, "show", kept)
 

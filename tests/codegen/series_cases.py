@@ -6,7 +6,7 @@ from functools import cache
 import mpmath
 import numpy as np
 
-from symfpu import Chain, Torus, lindstedt
+from symfpu import Chain, FromSeries, Torus, lindstedt
 from symfpu.codegen.series_program import series_facts, series_program
 from symfpu.codegen.straight_line import STRAIGHT_LINE
 from tests.tolerances import OF_LARGEST, OF_TAIL
@@ -103,8 +103,7 @@ def _expected_orbit(case, amplitudes, phases, frequencies, times):
 @cache
 def _torus(case, amplitudes):
     series = numeric(case)
-    by_seed = {q: mpmath.mpf(a) for q, a in zip(series.seeds, amplitudes, strict=True)}
-    return QTorus(series=series, amplitudes=by_seed, phases={}, frequency_order=0, order=case[3])
+    return FromSeries(series, tuple(map(mpmath.mpf, amplitudes)), frequency_order=0, order=case[3]).torus()
 
 
 def expected_frequencies(case, amplitudes):

@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, Torus, lindstedt
+from symfpu import Chain, FromSeries, Torus, lindstedt
 from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from tests.codegen.compilers import c_self_test, compile_c, library_of, pointer
@@ -43,8 +43,8 @@ def case(name, digits=DIGITS):
     draw = np.random.default_rng(len(name))
     series = lindstedt(chain, seeds, frequencies, order, digits=digits)
     number = float if digits is None else mpmath.mpf
-    amplitudes = {q: number(draw.uniform(0.05, 0.3)) for q in seeds}
-    return QTorus(series=series, amplitudes=amplitudes, phases=angles(draw, seeds), frequency_order=0, order=order)
+    amplitudes = tuple(number(draw.uniform(0.05, 0.3)) for _ in seeds)
+    return FromSeries(series, amplitudes, frequency_order=0, order=order).torus(angles(draw, seeds))
 
 
 def angles(draw, seeds):

@@ -40,9 +40,9 @@ def of_torus(torus):
 def of_series(torus):
     orders = GALLERY["two_torus"].series_orders
     A = [mpmath.mpf("0.5"), mpmath.mpf("0.25")]
-    terms, slopes = torus.series.frequency_terms(np.array(A) ** 2, orders["frequency_order"])
+    terms, slopes = torus.origin.series.frequency_terms(np.array(A) ** 2, orders["frequency_order"])
     omega = terms.sum(axis=0)
-    free = replace(torus, amplitudes={1: A[0], 2: A[1]}, order=orders["order"])
+    free = replace(torus.origin, amplitudes=tuple(A), order=orders["order"]).torus(torus.phases)
     exact = tuple(Fraction(float(w)) for w in omega)
     moved = Torus(torus.chain, torus.seeds, exact, free.harmonics, free.cosines, {1: 0.5, 2: -1.0}, torus.digits)
     return [moved.Q(100.0)[0], omega[1], slopes.sum(axis=0)[0, 1] * 2 * A[1]]

@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, lindstedt
+from symfpu import Chain, FromSeries, lindstedt
 from symfpu.codegen.languages.fortran import FORTRAN
 from symfpu.codegen.torus_program import torus_facts, torus_program
 from tests.codegen.compilers import STRICT_FORTRAN, program
@@ -55,7 +55,7 @@ end program driver
 def large():
     """A torus of doubles whose tables need several statements a column."""
     series = lindstedt(Chain(4, alpha="0.25"), (1, 2, 3), ("0.7671", "1.4187", "1.8541"), 16)
-    return QTorus(series, {1: 0.1, 2: 0.07, 3: 0.05}, {1: 0.3, 2: -1.0, 3: 2.5}, 16, 16)
+    return FromSeries(series, (0.1, 0.07, 0.05), 16, 16).torus({1: 0.3, 2: -1.0, 3: 2.5})
 
 
 def source(torus, name):

@@ -109,8 +109,8 @@ def test_other_index_placements_do_not_grow_the_modes_alike():
     chain, seeds, _, order = WIDE
     before, last = appendix_a(*WIDE, members=2).members
     family = family_of(chain, seeds, order)
-    shift, squares = shifts(last.torus.series), np.array([a**2 for a in last.amplitudes.values()])
-    jacobian = family._jacobian(shift, squares, float(np.linalg.norm(shift - shifts(before.torus.series))))
+    shift, squares = shifts(last.torus.origin.series), np.array([a**2 for a in last.amplitudes.values()])
+    jacobian = family._jacobian(shift, squares, float(np.linalg.norm(shift - shifts(before.torus.origin.series))))
     growth = family._growth(last.increment)
     gains = {
         name: (family._root(shift + step, squares + growth) - squares) / growth if np.all(np.abs(step) < 0.1) else np.full(4, np.inf)
@@ -140,8 +140,8 @@ def test_printed_neighbours_may_have_no_amplitudes():
     case = (Chain(16, beta="0.3"), (1, 2, 3), {1: 0.3, 2: 0.2, 3: 0.1}, 3)
     before, last = appendix_a(*case, members=2).members
     family = family_of(case[0], case[1], 3)
-    shift = shifts(last.torus.series)
-    difference = np.linalg.norm(shift - shifts(before.torus.series))
+    shift = shifts(last.torus.origin.series)
+    difference = np.linalg.norm(shift - shifts(before.torus.origin.series))
     with pytest.raises(NoRealAmplitude):
         family._root(shift + np.array([0, 0, difference]), np.array([a**2 for a in last.amplitudes.values()]))
     assert len(appendix_a(*case, members=4).members) == 4
@@ -191,7 +191,7 @@ def test_middle_mode_of_alpha_has_no_family():
 def test_members_have_the_orders_asked_for():
     chain, seeds, start, _ = LOW
     (member,) = appendix_a(chain, seeds, start, 5, members=1, frequency_order=4, coordinate_order=3).members
-    assert (member.torus.series.order, member.torus.frequency_order, member.torus.order) == (5, 4, 3)
+    assert (member.torus.origin.series.order, member.torus.origin.frequency_order, member.torus.origin.order) == (5, 4, 3)
     assert member.energy == pytest.approx(32 * member.linear_specific_energy, rel=LINEAR_ENERGY)
 
 

@@ -49,7 +49,7 @@ def summands(table, solution):
 def test_the_table_of_a_series_is_the_series(digits, close):
     """Its rows give the orbit at t = 0 and the chosen frequencies."""
     found = torus(digits)
-    table = found.series.to_frame()
+    table = found.origin.series.to_frame()
     with found.numbers.context(digits):
         coordinates = table[table.quantity == "coordinate"]
         angles = sum(coordinates[f"nu_{q}"].to_numpy() * found.phases[q] for q in SEEDS)

@@ -157,8 +157,8 @@ def test_results_do_not_depend_on_the_working_precision(torus):
             assert (again.Q(0.3) == torus.Q(0.3)).all()
             assert again.energy() == torus.energy()
             assert (again.average_spectrum() == torus.average_spectrum()).all()
-            assert again.series.term(5, 2) == torus.series.term(5, 2)
-            assert again.certificate == torus.certificate
+            assert again.origin.series.term(5, 2) == torus.origin.series.term(5, 2)
+            assert again.origin.certificate == torus.origin.certificate
 
 
 LONG = "0.123456789012345678901234567890123456789012345"  # 45 digits

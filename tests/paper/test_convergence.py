@@ -64,7 +64,7 @@ def breather():
 
 def sizes(torus):
     """mu^k S_2(k) of mode 1."""
-    return torus.series.absolute_sums(1, list(torus.amplitudes.values()), with_mu=True)[1]
+    return torus.origin.series.absolute_sums(1, list(torus.amplitudes.values()), with_mu=True)[1]
 
 
 def heights(sums):
@@ -81,7 +81,7 @@ def test_one_harmonic_grows_by_a_constant_ratio(torus):
     for k in (24, 30):
         found = []
         for order in (k - 2, k):
-            nu, values = torus.series.harmonic_terms(list(torus.amplitudes.values()), order)
+            nu, values = torus.origin.series.harmonic_terms(list(torus.amplitudes.values()), order)
             found.append(values[[tuple(row) for row in nu.tolist()].index((5, -4)), 2])
         assert ratios[k] == pytest.approx(found[1] / found[0], rel=ROUNDING)
 
@@ -111,7 +111,7 @@ def test_at_the_pole_the_frequency_of_mode_3_is_that_of_the_harmonic(torus):
 )
 def test_neither_digits_nor_incommensurable_frequencies_change_how_amplitudes_settle(torus, frequencies, digits):
     ours = amplitude_history(lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, frequencies, 14, digits=digits)).differences()
-    theirs = amplitude_history(torus.series).differences()
+    theirs = amplitude_history(torus.origin.series).differences()
     assert list(ours) == list(range(2, 13, 2))
     for k, delta in ours.items():
         assert delta == pytest.approx(theirs[k], rel=ALIKE)
@@ -135,7 +135,7 @@ def test_detuning_moves_the_harmonic_to_the_other_side_of_mode_3():
 
 def test_the_first_coincidence_of_the_printed_frequencies_is_far(torus):
     first, second = (Fraction(w) for w in TWO_TORUS.frequencies)
-    n, m = _coincidence(torus.series)
+    n, m = _coincidence(torus.origin.series)
     assert (n, m) == (19523, -9813)
     assert n * first + m * second == 0
     assert math.gcd(n, m) == 1  # the smallest whole numbers with this ratio

@@ -25,7 +25,7 @@ def figure_of(torus):
     return Figure1(
         torus=torus,
         assessment=replace(
-            assess(torus.series, torus),
+            assess(torus.origin.series, torus),
             word="asymptotic",
             best_order=4,
             differences={2: (0.125, 0.0625)},

@@ -25,7 +25,7 @@ FILES = [f"convergence-{panel}" for panel in "abcde"]
 @pytest.fixture(scope="module")
 def assessment():
     torus = solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3905", "0.7663"), 8))
-    return assess(torus.series, torus)
+    return assess(torus.origin.series, torus)
 
 
 @pytest.fixture

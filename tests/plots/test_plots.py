@@ -293,7 +293,7 @@ def test_colours_are_the_largest_coefficients(ax):
     plots.coefficients(cases.torus(), ax, mode=3)
     table = np.ma.filled(ax.collections[0].get_array(), np.nan).reshape(-1, 13)
     torus = cases.torus()
-    nu, values = torus.series.harmonic_terms(list(torus.amplitudes.values()), 5)
+    nu, values = torus.origin.series.harmonic_terms(list(torus.amplitudes.values()), 5)
     sizes = np.abs(values[:, 2]) * torus.chain.frequencies()[2]
     for length in range(7):
         of_length = sizes[np.abs(nu).sum(axis=1) == length]

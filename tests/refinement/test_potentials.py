@@ -52,7 +52,7 @@ def test_a_torus_has_the_energy_asked_for_and_its_verdict(law):
     energy = "1e-6" if law == "lj:12,6" else "3e-4"
     torus = torus_at_energy(chain, (1, 2), energy, harmonic=False, order=6)
     assert float(torus.energy()) == pytest.approx(float(energy), rel=FIXED_ENERGY)
-    assert assess(torus.series, torus).word == "converged"
+    assert assess(torus.origin.series, torus).word == "converged"
     assert resum(torus).residual() < 10 * torus.residual()
     refined = refine(torus, energy=energy)
     assert float(refined.energy()) == pytest.approx(float(energy), rel=FIXED_ENERGY)

@@ -99,7 +99,7 @@ def test_a_file_knows_what_was_prescribed(tmp_path):
     file = tmp_path / "torus.checkpoint"
     first = refine(two_modes(), energy="0.02", digits=20, file=file)
     again = refine(two_modes(), energy="0.02", digits=26, file=file)
-    assert again.sweeps > first.sweeps
+    assert again.origin.sweeps > first.origin.sweeps
     with mpmath.workdps(40):
         assert abs(again.energy() - mpmath.mpf("0.02")) < TWENTY_DIGITS
     with pytest.raises(InputError, match="energy"):

@@ -48,8 +48,8 @@ def by_harmonic(torus):
 def test_it_solves_the_equations_of_motion_within_its_bound(name):
     """On particles, at angles of their own; and it continues the torus of doubles."""
     torus, doubles = precise(name), near(name)
-    assert 0 < torus.residual(3) < torus.bound < ten(-23)
-    assert torus.error < ten(-25)
+    assert 0 < torus.residual(3) < torus.origin.bound < ten(-23)
+    assert torus.origin.error < ten(-25)
     assert torus.energy_range() < ten(-24)
     assert (torus.frequencies, torus.phases, torus.seeds) == (doubles.frequencies, doubles.phases, doubles.seeds)
     times = [0.0, 1.7]
@@ -100,11 +100,16 @@ def test_more_digits_continue_fewer_and_amplitudes_lead_back_to_frequencies(tmp_
         again = refine(near("alpha"), amplitudes=held, digits=30, file=file)
         assert abs(mpmath.mpf((again.frequency - more.frequency).numerator) / (again.frequency - more.frequency).denominator) < ten(-30)
     resumed = refine(near("alpha"), amplitudes=held, digits=36, file=file)
-    assert resumed.sweeps > again.sweeps
+    assert resumed.origin.sweeps > again.origin.sweeps
     loaded = load(save(tmp_path / "torus", more)).torus
     assert type(loaded.origin) is symfpu.IterativeRefinement
     assert (loaded.cosines == more.cosines).all()
-    assert (loaded.bound, loaded.error, loaded.sweeps, loaded.digits) == (more.bound, more.error, more.sweeps, 40)
+    assert (loaded.origin.bound, loaded.origin.error, loaded.origin.sweeps, loaded.digits) == (
+        more.origin.bound,
+        more.origin.error,
+        more.origin.sweeps,
+        40,
+    )
 
 
 def test_a_wrong_digit_is_seen():

@@ -183,7 +183,7 @@ def test_a_wave_that_its_chain_leaves_harmonic_has_no_amplitude_of_its_own():
 def test_its_small_divisors_are_what_they_say():
     found = refined("two")
     linear = dict(zip(found.chain.mode_numbers, found.chain.frequencies(), strict=True))
-    for near in found.near_resonances:
+    for near in found.origin.near_resonances:
         rate = sum(n * float(w) for n, w in zip(near.harmonic, found.frequencies, strict=True))
         assert (np.dot(near.harmonic, found.seeds) - near.mode) % 9 == 0
         assert np.isclose(near.divisor, rate**2 - linear[near.mode] ** 2, rtol=ORBIT)

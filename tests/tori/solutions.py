@@ -29,16 +29,16 @@ def digits_torus():
 
 # by name: how to make one
 CASES = {
-    "QTorus": series_torus,
-    "QTorus, digits": digits_torus,
-    "RefinedTorus": cache(lambda: refine(series_torus())),
-    "RefinedTorus, one angle": cache(lambda: refine(digits_torus())),
-    "ResummedTorus": cache(lambda: resum(series_torus())),
-    "ResummedTorus, digits": cache(lambda: resum(digits_torus())),
-    "FourierTorus": cache(lambda: refine(series_torus()).in_doubles()),
-    "PeriodicOrbit": breather,
-    "PreciseTorus, breather": cache(lambda: periodic_orbit_digits(breather(), 25)),
-    "PreciseTorus": cache(lambda: refine(digits_torus(), digits=20)),
+    "FromSeries": series_torus,
+    "FromSeries, digits": digits_torus,
+    "Newton": cache(lambda: refine(series_torus())),
+    "Newton, one angle": cache(lambda: refine(digits_torus())),
+    "Resummed": cache(lambda: resum(series_torus())),
+    "Resummed, digits": cache(lambda: resum(digits_torus())),
+    "Origin": cache(lambda: refine(series_torus()).in_doubles()),
+    "HarmonicBalance": breather,
+    "IterativeRefinement, breather": cache(lambda: periodic_orbit_digits(breather(), 25)),
+    "IterativeRefinement": cache(lambda: refine(digits_torus(), digits=20)),
 }
 
 
@@ -59,10 +59,10 @@ def precise_waves():
 
 # the same of a ring: travelling waves, and standing ones
 ON_A_RING = {
-    "QTorus, waves": waves,
-    "RefinedTorus, waves": cache(lambda: refine(waves())),
-    "FourierTorus, waves": cache(lambda: refine(waves()).in_doubles()),
-    "PreciseTorus, waves": precise_waves,
-    "FourierTorus, standing": cache(lambda: unfold(CASES["FourierTorus"]())),
-    "FourierTorus, standing, digits": cache(lambda: unfold(CASES["PreciseTorus"]())),
+    "FromSeries, waves": waves,
+    "Newton, waves": cache(lambda: refine(waves())),
+    "Origin, waves": cache(lambda: refine(waves()).in_doubles()),
+    "IterativeRefinement, waves": precise_waves,
+    "Origin, standing": cache(lambda: unfold(CASES["Origin"]())),
+    "Origin, standing, digits": cache(lambda: unfold(CASES["IterativeRefinement"]())),
 }

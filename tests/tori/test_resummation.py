@@ -128,15 +128,15 @@ def two_torus():
 
 
 def test_frequencies_of_a_converged_torus_are_the_chosen_ones(breather):
-    summed = pade_frequencies(breather.series, breather.amplitudes)
+    summed = pade_frequencies(breather.origin.series, breather.amplitudes)
     assert summed.values == pytest.approx([float(w) for w in breather.frequencies], rel=ROUNDING)
     assert summed.disagreement < ROUNDING
 
 
 def test_the_frequency_order_cuts_the_terms(breather):
     """Order 2 has two terms, Omega and mu^2 omega^(2), which are added; order 0 of a series has one."""
-    terms, _ = breather.series.frequency_terms([breather.amplitudes[1] ** 2])
-    assert pade_frequencies(breather.series, breather.amplitudes, 3).values == terms[0] + terms[2]
+    terms, _ = breather.origin.series.frequency_terms([breather.amplitudes[1] ** 2])
+    assert pade_frequencies(breather.origin.series, breather.amplitudes, 3).values == terms[0] + terms[2]
     printed = APPENDIX_F[-3]
     shortest = lindstedt(printed.chain, printed.seeds, printed.frequencies, 1)
     with pytest.raises(InputError, match="frequency_order = 1"):
@@ -144,7 +144,7 @@ def test_the_frequency_order_cuts_the_terms(breather):
 
 
 def test_amplitudes_of_a_converged_torus_are_the_truncated_root(breather):
-    summed = pade_amplitudes(breather.series, {1: 1.2 * breather.amplitudes[1]})
+    summed = pade_amplitudes(breather.origin.series, {1: 1.2 * breather.amplitudes[1]})
     assert summed[1] == pytest.approx(PERIODIC_ORBITS[0].amplitude, rel=RESUMMED)
     assert summed[1] == pytest.approx(breather.amplitudes[1], rel=RESUMMED)
 
@@ -204,10 +204,10 @@ def test_too_few_terms_have_no_poles():
 def test_the_nearest_pole_of_the_duffing_oscillator_is_where_its_terms_end():
     """Mode N/2 of beta: the ratios of its terms tend to 1 / r as 1/k (Domb and Sykes); r is negative, as for a softer spring."""
     torus = solve_amplitudes(lindstedt(Chain(12, beta="0.5"), (6,), ("1.43",), 26, digits=30))
-    terms, _ = torus.series.frequency_terms([torus.amplitudes[6] ** 2])
+    terms, _ = torus.origin.series.frequency_terms([torus.amplitudes[6] ** 2])
     ratios = [float(b / a) for a, b in zip(terms[16:, 0], terms[17:, 0], strict=False)]
     limit = np.polyfit(1 / np.arange(17, 27), ratios, 2)[2]
-    nearest = pade_poles(torus.series, 6, torus.amplitudes)[0]
+    nearest = pade_poles(torus.origin.series, 6, torus.amplitudes)[0]
     assert nearest.imag == pytest.approx(0, abs=POLES)
     assert nearest.real < 0
     assert 1 < nearest.real * limit < 1 + BRANCH_POINT
@@ -228,8 +228,8 @@ def test_a_converged_torus_is_its_own_resummation(breather):
     assert (summed.phases, summed.digits) == (breather.phases, None)
     assert np.array_equal(summed.harmonics, breather.harmonics)
     assert np.abs(summed.cosines - breather.cosines).max() < RESUMMED * np.abs(breather.cosines).max()
-    assert summed.disagreement.shape == summed.cosines.shape
-    assert summed.disagreement.max() < RESUMMED
+    assert summed.origin.disagreement.shape == summed.cosines.shape
+    assert summed.origin.disagreement.max() < RESUMMED
     assert summed.Q(3.7) == pytest.approx(breather.Q(3.7), rel=0, abs=RESUMMED)
 
 
@@ -267,7 +267,7 @@ def test_coefficients_are_sums_over_the_orders_of_their_harmonic(name):
             rows = [parts[k][nu] for k in range(first, order + 1, step) if nu in parts[k]]
             expected = pade_sum(np.stack(rows))
             assert np.array_equal(summed.cosines[row], expected.values)
-            assert np.array_equal(summed.disagreement[row], expected.disagreement)
+            assert np.array_equal(summed.origin.disagreement[row], expected.disagreement)
 
 
 @pytest.mark.parametrize("name", ["mixed", "alpha, one seed", "beta, two seeds"])

@@ -54,12 +54,12 @@ def inequality(reason):
 @pytest.mark.parametrize("name", GOOD)
 def test_good_roots_are_certified_to_the_asked_digits(name, tori):
     torus = tori[name]
-    assert torus.certificate.certified
-    assert torus.certificate.reason == ""
+    assert torus.origin.certificate.certified
+    assert torus.origin.certificate.reason == ""
     assert "certified" in repr(torus)
     assert "not certified" not in repr(torus)
     for q, amplitude in torus.amplitudes.items():
-        assert 0 < torus.certificate.radius[q] <= abs(amplitude) * mpmath.mpf(10) ** -DIGITS
+        assert 0 < torus.origin.certificate.radius[q] <= abs(amplitude) * mpmath.mpf(10) ** -DIGITS
 
 
 @pytest.mark.long
@@ -68,7 +68,7 @@ def test_the_box_holds_the_root_of_twenty_more_digits(name, tori):
     torus, better = tori[name], torus_of(name, DIGITS + 20)
     with mpmath.workdps(DIGITS + 40):
         for q, amplitude in torus.amplitudes.items():
-            assert abs(better.amplitudes[q] - amplitude) <= torus.certificate.radius[q]
+            assert abs(better.amplitudes[q] - amplitude) <= torus.origin.certificate.radius[q]
 
 
 @pytest.mark.parametrize(("beta", "square"), [("0.5", "1/4"), ("3", "4/49"), ("-0.7", "2/3")])
@@ -78,10 +78,10 @@ def test_the_box_holds_the_exact_root_of_a_closed_form(beta, square):
     omega = 1 + chain.beta / 6 * Fraction(3, 8) * chain.C(1, 1, 1, 1) * square
     for digits in (5, 30, 200):
         torus = solve_amplitudes(lindstedt(chain, (1,), (omega,), 1, digits=digits))
-        assert torus.certificate.certified
+        assert torus.origin.certificate.certified
         with mpmath.workdps(digits + 30):
             exact = mpmath.sqrt(mpmath.mpf(square.numerator) / square.denominator)
-            assert abs(torus.amplitudes[1] - exact) <= torus.certificate.radius[1]
+            assert abs(torus.amplitudes[1] - exact) <= torus.origin.certificate.radius[1]
             assert abs(torus.amplitudes[1] / exact - 1) < mpmath.mpf(10) ** -digits
 
 
@@ -100,9 +100,9 @@ def test_two_seeds_in_closed_form():
                 slope[i, j] = mpmath.mpf(4) / 60 * Omega[i] * Omega[j] ** 2 * weight
         shift = mpmath.matrix([mpmath.mpf(w) - o for w, o in zip(frequencies, Omega, strict=True)])
         squares = mpmath.lu_solve(slope, shift)
-        assert torus.certificate.certified
+        assert torus.origin.certificate.certified
         for q, square in zip((1, 2), squares, strict=True):
-            assert abs(torus.amplitudes[q] - mpmath.sqrt(square)) <= torus.certificate.radius[q]
+            assert abs(torus.amplitudes[q] - mpmath.sqrt(square)) <= torus.origin.certificate.radius[q]
 
 
 @pytest.mark.parametrize("name", GOOD)
@@ -112,7 +112,7 @@ def test_a_box_beside_the_root_is_not_certified(name, sign, tori):
     torus = tori[name]
     with mpmath.workdps(DIGITS + 40):
         moved = squares_of(torus, 1 + sign * 2 * mpmath.mpf(10) ** -DIGITS)
-    certificate = certify_root(torus.series, moved, torus.frequency_order)
+    certificate = certify_root(torus.origin.series, moved, torus.origin.frequency_order)
     assert not certificate.certified
     seed, step, allowed = inequality(certificate.reason)
     assert seed in torus.seeds
@@ -124,16 +124,16 @@ def test_a_box_beside_the_root_is_not_certified(name, sign, tori):
 def test_coefficients_that_are_not_known_well_enough_certify_nothing(name, tori):
     """Radii of the corrections blown up to 10^-digits of one: the value at the root is no longer near zero for sure."""
     torus = tori[name]
-    worse = 2.0 ** (torus.series.bits - DIGITS / LOG10_2 + 10)
-    radii = tuple((coordinate, (correction + 1) * worse) for coordinate, correction in torus.series.radii)
-    certificate = certify_root(replace(torus.series, radii=radii), squares_of(torus), torus.frequency_order)
+    worse = 2.0 ** (torus.origin.series.bits - DIGITS / LOG10_2 + 10)
+    radii = tuple((coordinate, (correction + 1) * worse) for coordinate, correction in torus.origin.series.radii)
+    certificate = certify_root(replace(torus.origin.series, radii=radii), squares_of(torus), torus.origin.frequency_order)
     assert not certificate.certified
     _, step, allowed = inequality(certificate.reason)
     assert step >= allowed
 
 
 def test_coefficients_that_are_not_known_at_all_leave_the_jacobian_singular(tori):
-    series = tori["beta, one seed"].series
+    series = tori["beta, one seed"].origin.series
     radii = tuple((coordinate, correction + 2.0 ** (series.bits + 20)) for coordinate, correction in series.radii)
     certificate = certify_root(replace(series, radii=radii), squares_of(tori["beta, one seed"]), series.order)
     assert not certificate.certified
@@ -143,9 +143,9 @@ def test_coefficients_that_are_not_known_at_all_leave_the_jacobian_singular(tori
 @pytest.mark.parametrize("name", ["alpha, negative, two seeds", "beta, one seed"])
 def test_the_root_of_another_order_is_not_that_of_this_one(name, tori):
     torus = tori[name]
-    earlier = solve_amplitudes(torus.series, frequency_order=torus.frequency_order - 2)
-    assert earlier.certificate.certified
-    assert not certify_root(torus.series, squares_of(earlier), torus.frequency_order).certified
+    earlier = solve_amplitudes(torus.origin.series, frequency_order=torus.origin.frequency_order - 2)
+    assert earlier.origin.certificate.certified
+    assert not certify_root(torus.origin.series, squares_of(earlier), torus.origin.frequency_order).certified
 
 
 FOLD = "0.7019124369457541296273727234870801111276537902432932422214754496871057"
@@ -186,14 +186,14 @@ def test_a_box_with_two_roots_is_not_certified():
 
 def test_a_double_root_is_found_but_not_certified():
     torus = solve_amplitudes(at_the_fold()[0])
-    assert not torus.certificate.certified
-    assert torus.certificate.reason
+    assert not torus.origin.certificate.certified
+    assert torus.origin.certificate.reason
     assert "not certified" in repr(torus)
 
 
 def test_doubles_have_no_certificate():
     torus = solve_amplitudes(lindstedt(Chain(8, beta="0.3"), (3,), ("1.113",), 3))
-    assert torus.certificate is None
+    assert torus.origin.certificate is None
     assert "certified" not in repr(torus)
 
 
@@ -202,7 +202,7 @@ def test_doubles_have_no_certificate():
 def test_balls_hold_the_coefficients_of_thirty_more_digits(name, tori):
     """mu^k omega_q^(k) as balls from few digits overlap those from many, and contain the latter's midpoints."""
     chain, seeds, frequencies, order = GOOD[name]
-    few, many = tori[name].series, lindstedt(chain, seeds, frequencies, order, digits=DIGITS + 30)
+    few, many = tori[name].origin.series, lindstedt(chain, seeds, frequencies, order, digits=DIGITS + 30)
     with flint.ctx.workprec(many.bits + 100):
         for ours, theirs in zip(frequency_balls(few), frequency_balls(many), strict=True):
             for polynomial, better in zip(ours, theirs, strict=True):
@@ -213,7 +213,7 @@ def test_balls_hold_the_coefficients_of_thirty_more_digits(name, tori):
 
 
 def test_balls_are_the_numbers_of_the_series(tori):
-    series = tori["alpha, negative, two seeds"].series
+    series = tori["alpha, negative, two seeds"].origin.series
     point = [mpmath.mpf("0.3"), mpmath.mpf("0.2")]
     terms, _ = series.frequency_terms(np.array(point, dtype=object))
     with flint.ctx.workprec(series.bits):

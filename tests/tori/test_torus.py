@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, lindstedt, solve_amplitudes
+from symfpu import Chain, FromSeries, InputError, lindstedt, solve_amplitudes
 from symfpu.tori.columns import mean_cosine
 from tests.tolerances import RESIDUAL_ROUNDING, ROUNDING, SLOPE
 
@@ -42,7 +42,7 @@ def at_coupling(couplings, factor, order):
     for _ in range(40):  # omega = Omega + sum mu^k omega^(k)(A; omega) by iteration
         series = lindstedt(chain, (2,), (repr(float(omega)),), order + 2)
         omega = series.frequency_terms([0.25])[0].sum()
-    return QTorus(series=series, amplitudes={2: 0.5}, phases={2: 0.0}, frequency_order=order + 2, order=order)
+    return FromSeries(series, (0.5,), frequency_order=order + 2, order=order).torus()
 
 
 @pytest.mark.long
@@ -60,7 +60,7 @@ def test_residuals_are_by_mode_and_on_the_grid(breather):
     assert residuals.shape == (7,)
     assert (residuals[1::2] == 0).any() or residuals[1::2].max() < ROUNDING
     force = [
-        np.abs(breather.series.chain.accelerations(replace(breather, phases={3: 2 * np.pi * (j + 1 / 3) / 32}).Q(0.0))).max()
+        np.abs(breather.origin.series.chain.accelerations(replace(breather, phases={3: 2 * np.pi * (j + 1 / 3) / 32}).Q(0.0))).max()
         for j in range(32)
     ]
     assert breather.residual(32) == pytest.approx(residuals.max() / max(force), rel=RESIDUAL_ROUNDING)

@@ -240,7 +240,7 @@ def test_waves_of_a_ring_are_seen_refined_and_saved(page, tmp_path):
     exec(lines(page), names)
     page.wait_for_function(TEXT, arg=["table.seeds", f"{names['refined'].amplitudes[1]:.10g}"])
     path = downloaded(page, "Save as bundle", tmp_path / "ring.symfpu")
-    assert type(load(path).torus).__name__ == "RefinedTorus"
+    assert type(load(path).torus.origin).__name__ == "Newton"
 
 
 def test_amplitudes_of_a_ring_are_refused_by_name(page):

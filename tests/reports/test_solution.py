@@ -7,9 +7,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu.reports.solution import solution_record
 from symfpu import Chain, assess, lindstedt, solve_amplitudes
 from symfpu.reports.series import assessment_text
+from symfpu.reports.solution import solution_record
 
 
 @pytest.fixture(scope="module")
@@ -18,21 +18,21 @@ def torus():
 
 
 def test_a_record_survives_json_without_losing_a_digit(torus):
-    record = json.loads(json.dumps(torus_record(torus)))
+    record = json.loads(json.dumps(solution_record(torus)))
     assert {int(q): float(a) for q, a in record["amplitudes"].items()} == torus.amplitudes
     assert float(record["energy"]) == float(torus.energy())
     assert float(record["harmonic_energy"]) == torus.harmonic_energies().sum()
     assert float(record["average_harmonic_energy"]) == torus.average_spectrum().sum()
-    assert {int(k): tuple(map(float, values)) for k, values in record["history"].items()} == torus.history
+    assert {int(k): tuple(map(float, values)) for k, values in record["history"].items()} == torus.origin.history
     assert (record["alpha"], record["beta"], record["seeds"]) == ("1/3", "0.1", [1, 2])
     assert record["residual"] == float(f"{torus.residual():.15g}")
     assert record["warnings"] == list(torus.warnings)
-    assert len(record["smallest_divisors"]) == len(torus.series.smallest_divisors)
+    assert len(record["smallest_divisors"]) == len(torus.origin.series.smallest_divisors)
 
 
 def test_the_evidence_has_a_line_for_every_order_of_a_short_series(torus):
     """With the numbers of the assessment."""
-    assessment = assess(torus.series, torus)
+    assessment = assess(torus.origin.series, torus)
     *_, two, _, four = assessment_text(assessment).splitlines()
     term = assessment.terms[4]
     shown = (f"{assessment.amplitudes[4][0]:.10g}", f"{assessment.residuals[4]:.1e}", f"{assessment.energy_errors[4]:.1e}")
@@ -44,7 +44,7 @@ def test_the_evidence_has_a_line_for_every_order_of_a_short_series(torus):
 
 
 def test_the_evidence_of_a_long_series_is_short_and_has_its_best_order(torus):
-    assessment = assess(torus.series, torus)
+    assessment = assess(torus.origin.series, torus)
     values = np.full(243, 0.5)
     sums = dict.fromkeys((1, 2), (values, values))
     long = replace(assessment, order=242, best_order=157, residuals=values, energy_errors=values, sums=sums)
@@ -55,9 +55,9 @@ def test_the_evidence_of_a_long_series_is_short_and_has_its_best_order(torus):
 
 def test_a_record_of_many_digits_keeps_them():
     torus = solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (3,), ("1.1125",), 6, digits=30))
-    record = json.loads(json.dumps(torus_record(torus)))
+    record = json.loads(json.dumps(solution_record(torus)))
     assert (record["digits"], record["certified"]) == (30, True)
-    assert record["guard_digits"] == torus.series.guard_digits
+    assert record["guard_digits"] == torus.origin.series.guard_digits
     with mpmath.workdps(45):
         for text, number in ((record["amplitudes"]["3"], torus.amplitudes[3]), (record["energy"], torus.energy())):
             assert abs(mpmath.mpf(text) / number - 1) < mpmath.mpf(10) ** -29
