@@ -21,7 +21,13 @@ from symfpu.normal.kronecker import KroneckerFlow, multiplied
 from symfpu.normal.linearised import Linearised, Values
 from symfpu.normal.modes import NormalMode
 from symfpu.numbers.arithmetic import doubles_as_integers, from_integers, with_digits
-from symfpu.refinement.digits import CARRIED_DIGITS, CHECKED, MOST_HARMONICS, SPARE_DIGITS
+from symfpu.refinement.digits import (
+    CARRIED_DIGITS,
+    CHECKED,
+    MOST_HARMONICS,
+    SPARE_DIGITS,
+    IterativeRefinement,
+)
 from symfpu.refinement.harmonics import within_reach
 from symfpu.refinement.iterative_refinement import (
     CHECK_BITS,
@@ -34,7 +40,7 @@ from symfpu.refinement.iterative_refinement import (
 )
 from symfpu.refinement.kronecker import Integers
 from symfpu.refinement.lattice import Floats, Ints, dilated
-from symfpu.tori.torus import Torus
+from symfpu.tori.torus import Torus, comes_from
 
 FAR = 1e-6  # change of sigma, relative, that leads to another mode
 SETTLED = 15  # digits of sigma and p up to which their doubles change, and the Jacobian
@@ -223,7 +229,9 @@ class NormalModeProblem(TruncatedProblem):
     def _by_torus(self) -> Any:
         """The relative change of sigma that the error of the torus makes, an estimate."""
         torus, share = self.stage.torus, self.jacobian.torus_share()
-        error = getattr(torus, "error", mpmath.mpf(10) ** -self.stage.digits)
+        error = mpmath.mpf(10) ** -self.stage.digits
+        if comes_from(torus, IterativeRefinement):
+            error = torus.origin.error
         return error * float(share) / abs(self.start)
 
     def result(self, left: Truncation) -> NormalMode:

@@ -121,7 +121,7 @@ def distance_claim(torus: Torus[FromSeries], Q: Floats) -> Claim:
 
     Q : of the FPU-trajectory.
     """
-    mu = torus.origin.series.chain.mu
+    mu = torus.chain.mu
     there = np.asarray(torus.Q(0.0), dtype=float)
     off = float(np.abs(there - Q).max() / np.abs(Q).max())
     ours = f"mu = {mu:.5f}; they begin {off:.2g} = {off / mu:.2g} mu "

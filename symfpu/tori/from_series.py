@@ -66,7 +66,8 @@ class FromSeries(Origin):
 
     Eqs. qser and serabs1.
 
-    series : it was solved from. amplitudes : (s,), in the order of the seeds.
+    series : it was solved from. amplitudes : (s,), in the order of the seeds. `torus(phases,
+        warnings)` makes the torus.
     frequency_order : truncation of the frequency series that gave the amplitudes.
     order : truncation of the coordinates; the two are independent.
     history : K -> amplitudes, (s,), by frequency order. root_residual : largest

@@ -125,7 +125,7 @@ def described(torus: Torus, bundle: str) -> Choice:
     """A choice that says what a torus from a file is; the file itself stays what is shown."""
     law: dict[str, Any] = {"alpha": "0", "beta": "0", "potential": ""}
     law |= torus.chain.typed_law
-    order = getattr(torus, "order", None)
+    order = torus.origin.order if comes_from(torus, FromSeries) else 8
     return Choice(
         N=str(torus.chain.N),
         **law,
@@ -133,6 +133,6 @@ def described(torus: Torus, bundle: str) -> Choice:
         seeds=",".join(map(str, torus.seeds)),
         given=FREQUENCIES,
         values=tuple(decimal(w) for w in torus.frequencies),
-        order=str(8 if order is None else order),
+        order=str(order),
         bundle=bundle,
     )

@@ -22,7 +22,7 @@ def test_breather(benchmark, record):
 def test_breather_at_a_hundred_digits(benchmark, record):
     orbit = periodic_orbit(CHAIN, 1, OMEGA)
     found = benchmark.pedantic(periodic_orbit_digits, (orbit, 100), {"frequency": OMEGA}, rounds=1, iterations=1)
-    record("breather N = 32, seed 1, 100 digits", note=f"residual bound {float(found.bound):.0e}, {found.sweeps} sweeps")
+    record("breather N = 32, seed 1, 100 digits", note=f"residual bound {float(found.origin.bound):.0e}, {found.origin.sweeps} sweeps")
 
 
 def test_multipliers(benchmark, record):

@@ -29,7 +29,7 @@ def transform_pair(refined):
 def summary(refined):
     """Of the final harmonics, what the line says."""
     pair, lattice = transform_pair(refined)
-    products = [step.krylov for step in refined.steps]
+    products = [step.krylov for step in refined.origin.steps]
     return {
         "text": f"{len(refined.harmonics)} harmonics, residual {refined.residual():.1e}, {len(products)} last steps, products {products}",
         "lattice": lattice,

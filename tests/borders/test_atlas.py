@@ -162,7 +162,7 @@ def test_newton_stops_at_the_most_harmonics():
 def with_divisors(**divisors):
     """What has near resonances of mode 1 to 3, without a torus."""
     near = [NearResonance(int(name[1]), (1,), size, 0.1 * int(name[1])) for name, size in divisors.items()]
-    return SimpleNamespace(near_resonances=tuple(near))
+    return SimpleNamespace(origin=SimpleNamespace(near_resonances=tuple(near)))
 
 
 def test_a_divisor_vanishes_where_the_line_through_two_tori_does():

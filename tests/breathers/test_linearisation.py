@@ -20,7 +20,7 @@ CASES = (
 def test_elimination_changes_neither_index_nor_solutions(chain, seed, amplitude):
     orbit = breather_at_amplitude(chain, seed, amplitude)
     balance = Balance(chain, seed, len(orbit.cosines) + 3)
-    z = balance.vector(orbit.cosines, orbit.sigma)
+    z = balance.vector(orbit.cosines, orbit.origin.sigma)
     places = balance.near_resonance(z, NEAR_RESONANCE)
     assert 0 < len(places) < len(z) - 1
     whole, near = WholeMatrix(balance, z), NearResonances(balance, z, places)
@@ -37,7 +37,7 @@ def test_elimination_changes_neither_index_nor_solutions(chain, seed, amplitude)
 def test_own_divisors_are_the_diagonal(chain, seed, amplitude):
     orbit = breather_at_amplitude(chain, seed, amplitude)
     balance = Balance(chain, seed, len(orbit.cosines) - 1)
-    z = balance.vector(orbit.cosines, orbit.sigma)
+    z = balance.vector(orbit.cosines, orbit.origin.sigma)
     _, jacobian = balance.system(z)
     assert balance.own_divisors(z) == pytest.approx(np.diag(jacobian), abs=THOUSAND_ROUNDINGS)
 

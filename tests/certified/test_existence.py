@@ -230,7 +230,7 @@ def test_the_derivative_is_that_of_harmonic_balance(name):
         part = linear_part(BondBalls(rounded, strip(rounded)), 1e-300)
     attempt = Attempt(part, 6)
     balance = Balance(of_doubles.chain, of_doubles.seed, attempt.columns)
-    _, jacobian = balance.system(balance.vector(of_doubles.cosines, of_doubles.sigma))
+    _, jacobian = balance.system(balance.vector(of_doubles.cosines, of_doubles.origin.sigma))
     inside = attempt.inside
     assert (inside.n == balance.n).all()
     assert (inside.q == balance.q + 1).all()

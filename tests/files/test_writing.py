@@ -17,7 +17,7 @@ import pytest
 
 from symfpu import InputError
 from symfpu.files import writing
-from symfpu.files.archive import Archive, write_document
+from symfpu.files.archive import SCHEMA, Archive, write_document
 from symfpu.files.formats import BUNDLE
 from symfpu.files.writing import open_to_read, output_file, output_folder, regular_file, write_bytes, write_file, write_rows, write_text
 
@@ -131,7 +131,7 @@ def test_a_device_is_written_to_and_stays_a_device(tmp_path):
 
 def test_an_archive_goes_through_a_pipe(tmp_path):
     """A stream that does not go back: what comes out is the file."""
-    body, values = {"format": BUNDLE, "schema": 7}, np.arange(1000.0)
+    body, values = {"format": BUNDLE, "schema": SCHEMA}, np.arange(1000.0)
     pipe, copy = tmp_path / "pipe", tmp_path / "copy"
     os.mkfifo(pipe)
     reader = threading.Thread(target=lambda: copy.write_bytes(pipe.read_bytes()))

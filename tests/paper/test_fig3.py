@@ -76,5 +76,5 @@ def test_figure_3_over_a_short_time(monkeypatch, tmp_path):
 
 @pytest.mark.parametrize(("off", "alpha", "verdict"), [(0.1, "0.33", HOLDS), (0.1, "0.5", PARTLY), (0.5, "0.33", FAILS)])
 def test_the_initial_distance_is_of_the_order_of_mu(off, alpha, verdict):
-    torus = SimpleNamespace(series=SimpleNamespace(chain=Chain(32, alpha=alpha)), Q=lambda t: np.array([2.0, 2.0 * off]))
+    torus = SimpleNamespace(chain=Chain(32, alpha=alpha), Q=lambda t: np.array([2.0, 2.0 * off]))
     assert fig3.distance_claim(torus, np.array([2.0, 0.0])).verdict == verdict

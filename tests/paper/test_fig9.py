@@ -64,6 +64,17 @@ class Series:
 
     order: int
     residuals: dict
+    phases: None = None
+
+    @property
+    def origin(self):
+        return self
+
+    def cut_at(self, order):
+        return replace(self, order=order)
+
+    def torus(self, phases):
+        return self
 
     def residual(self):
         return self.residuals[self.order]

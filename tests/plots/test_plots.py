@@ -309,7 +309,7 @@ def test_small_divisors_are_those_of_the_series_or_of_newtons_method(ax):
     assert list(ax.get_lines()[0].get_xdata()) == [d.size for d in cases.series().smallest_divisors]
     other = Figure().add_subplot()
     plots.small_divisors(cases.refined(), other)
-    assert list(other.get_lines()[0].get_xdata()) == [abs(r.divisor) for r in cases.refined().near_resonances]
+    assert list(other.get_lines()[0].get_xdata()) == [abs(r.divisor) for r in cases.refined().origin.near_resonances]
 
 
 def test_amplitudes_are_differences_by_order(ax):

@@ -61,7 +61,7 @@ def test_more_digits_continue_fewer_and_the_error_is_about_what_is_estimated():
     fewer, more = small(20), small(32)
     off = farthest(fewer, more)
     assert 0 < off < ten(-20)
-    assert off < 100 * fewer.error < ten(-18)
+    assert off < 100 * fewer.origin.error < ten(-18)
     assert more.origin.error < ten(-32)
     with mpmath.workdps(50):
         for w, x in zip(fewer.frequencies, more.frequencies, strict=True):
@@ -176,8 +176,8 @@ def test_the_bound_of_a_breather_sees_a_digit_in_the_thirtieth_place():
         iterative_refinement.converge(problem, 40, unheard)
         problem.coefficients[3, 4] += problem.largest >> 100
         spoilt = problem.result(problem.truncation())
-    assert SPOILT_LEAST < spoilt.bound < SPOILT_MOST
-    assert SPOILT_LEAST < spoilt.residuals(7).max() < spoilt.bound * largest_acceleration(orbit)
+    assert SPOILT_LEAST < spoilt.origin.bound < SPOILT_MOST
+    assert SPOILT_LEAST < spoilt.residuals(7).max() < spoilt.origin.bound * largest_acceleration(orbit)
 
 
 class Interrupted(Exception):

@@ -126,7 +126,7 @@ def test_newtons_method_converges_quadratically(case, monkeypatch):
     disturbed = torus.cosines * (1 + 0.01 * np.random.default_rng(1).normal(size=torus.cosines.shape)) * equation.mask
     found = newton.newton(equation, [FrequencyShift(i, x) for i, x in enumerate(shifts)], disturbed.astype(np.longdouble), shifts)
     assert not found.failure
-    changes = np.array([step.change for step in found.origin.steps])
+    changes = np.array([step.change for step in found.steps])
     assert changes[0] > 1e-3
     assert changes[-1] < PROMISED_RESIDUAL
     before, after = changes[:-1], changes[1:]

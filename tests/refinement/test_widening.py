@@ -144,7 +144,7 @@ def guess():
 @pytest.mark.usefixtures("small_polytopes")
 def test_as_many_as_allowed_leave_a_doubt(guess):
     torus = refine(guess, amplitudes=guess.amplitudes, most_harmonics=70)
-    assert torus.verdict == "doubtful"
+    assert torus.warnings
     assert len(torus.harmonics) == 70
     assert "most_harmonics=70" in torus.warnings[0]
     assert f"{torus.residual():.2g}" in torus.warnings[0]
@@ -175,7 +175,7 @@ def test_what_does_not_fit_into_memory_leaves_the_best_torus_with_a_doubt(guess,
 
     monkeypatch.setattr(search, "require_memory", small)
     torus = refine(guess, amplitudes=guess.amplitudes)
-    assert torus.verdict == "doubtful"
+    assert torus.warnings
     assert 50 < len(torus.harmonics) <= 100
     assert f"leave a residual of {torus.residual():.2g}" in torus.warnings[0]
 

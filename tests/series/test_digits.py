@@ -136,16 +136,16 @@ def test_amplitudes_averages_and_residuals_are_those_of_doubles(pair):
     )  # the doubles cancel down to rounding
     assert (many.harmonics == few.harmonics).all()
     same(many.cosines, few.cosines)
-    assert many.frequency_order == few.frequency_order
-    assert many.history.keys() == few.history.keys()
-    for K, amplitudes in many.history.items():
-        assert [float(a) for a in amplitudes] == pytest.approx(few.history[K], rel=SAME_AS_DOUBLES)
+    assert many.origin.frequency_order == few.origin.frequency_order
+    assert many.origin.history.keys() == few.origin.history.keys()
+    for K, amplitudes in many.origin.history.items():
+        assert [float(a) for a in amplitudes] == pytest.approx(few.origin.history[K], rel=SAME_AS_DOUBLES)
 
 
 def test_history_and_shifts_are_mpf(pair):
     many, few = pair
-    same(shifts(many.series), shifts(few.series))
-    for differences in amplitude_history(many.series).differences().values():
+    same(shifts(many.origin.series), shifts(few.origin.series))
+    for differences in amplitude_history(many.origin.series).differences().values():
         assert all(isinstance(d, float) for d in differences)
 
 
