@@ -45,7 +45,7 @@ def test_a_step_that_lowers_the_residual_is_a_step(solver):
     solver(0.3, 0.3, 1)
     found = refine(guess(), amplitudes=WANTED)
     assert found.warnings == ()
-    assert len(found.origin.steps) > len(expected.steps)
+    assert len(found.origin.steps) > len(expected.origin.steps)
     assert np.array_equal(found.harmonics, expected.harmonics)
     assert np.abs(found.cosines - expected.cosines).max() < REFINED_COEFFICIENT
 
