@@ -50,6 +50,7 @@ Floats = NDArray[np.float64]
 FIRST_HARMONICS = 8
 FIRST_SHIFT = 1e-3  # of the frequency, relative: of the orbit from which steps begin
 FIRST_STRETCH = 0.25  # of the bonds, at most, of the same
+MOST_DRIVEN = 0.1  # of its amplitude: what it has in another coefficient
 LOWERINGS = 40  # halvings of that orbit's amplitude, until it continues the linear mode
 LONGEST, SHORTEST = 1.0, 1e-6  # steps, in units of the largest coefficient
 LONGEST_OF_MANY = 0.25  # with many unknowns: farther on there are more of them
@@ -163,7 +164,24 @@ class FromRest:
         stretch = float(np.max(np.abs(self.chain.stretches(unit))))
         A = FIRST_STRETCH / stretch
         shift = abs(frequency_shift(self.chain, {self.seed: 1.0})[self.seed])
-        return float(min(A, (FIRST_SHIFT * linear / shift) ** 0.5)) if shift else A
+        if shift:
+            A = float(min(A, (FIRST_SHIFT * linear / shift) ** 0.5))
+        driven = self._driven(A)
+        while driven > MOST_DRIVEN:  # as halving would find by attempts that fail
+            A, driven = A / 2, driven / 2**self.chain.degree_step
+        return A
+
+    def _driven(self, amplitude: float) -> float:
+        """The largest coefficient besides A, relative to it, that the linear mode drives at once.
+
+        The lowest order of the series in the amplitude: its first power or its square.
+        """
+        balance = Balance(self.chain, self.seed, FIRST_HARMONICS)
+        equations = balance.equations(amplitude * _seed_axis(balance))
+        others = balance.detuning != 0
+        others[balance.first] = False
+        driven = np.abs(equations[others] / balance.detuning[others])
+        return float(driven.max(initial=0.0)) / amplitude
 
     def _near_rest(self, amplitude: float) -> Point:
         """The orbit that Newton's method finds from the linear mode with its lowest shift."""
@@ -358,7 +376,7 @@ def _off(low: Point, high: Point, index: int) -> str:
     """Why two orbits near rest are not on one branch with the linear mode; empty if they are."""
     for point in (low, high):
         others = np.delete(np.abs(point.z[:-1]), point.balance.first)
-        if float(others.max(initial=0)) > 0.1 * point.size:
+        if float(others.max(initial=0)) > MOST_DRIVEN * point.size:
             return "another mode has a tenth of the amplitude"
     if low.balance.harmonics != high.balance.harmonics:
         low = with_harmonics(low, high.balance.harmonics)
