@@ -36,7 +36,7 @@ FIRST = 2**13  # samples in which the channels of a longer orbit are looked for
 VALUES = 2048  # of a channel, at most
 LEAST_VALUES = 16  # of a channel
 MIRROR = 12  # turns over a channel's window between a line and its mirror image, at least
-ROUNDING = 16 * float(np.finfo(float).eps)  # of a mode's coordinate along an orbit
+ROUNDING = 64 * float(np.finfo(float).eps)  # of a mode's coordinate along an orbit
 EPS = float(np.finfo(float).eps)
 # of a turn: a line that windows see so far apart has unseen ones within its width; and how far a
 # line may be off, in what windows differ by, there and elsewhere
@@ -46,6 +46,7 @@ MOVING = 0.05
 CONSTANT = 0.25  # of a turn: what windows see of a constant, above which it is a slow line
 HALF = 0.5  # of a frequency: named so far from where it was seen, a line is an image
 # of the record: what lines of these differ by, and from those of the whole, is their error
+UNRESOLVED = 0.5  # turns over the orbit between lines of one mode that are seen as one
 PARTS = ((0.0, 0.75), (0.125, 0.875), (0.25, 1.0))
 
 
@@ -93,6 +94,9 @@ class FrequencyAnalysis(Shown, Tabled):
     lines : of all modes, the strongest of each first.
     window_frequencies : of the strongest line of each mode in equal windows; (W, N-1), nan where
         a mode has no line.
+    unresolved : how far from combinations of others independent frequencies are that the orbit is
+        too short to tell from them, 0 where there are none. Every line then has such neighbours,
+        and its error is this at least; orbits of 2 pi over it, and longer, tell them apart.
 
     >>> from symfpu import Chain, frequency_analysis, integrate, refine, torus_at_amplitudes
     >>> torus = refine(torus_at_amplitudes(Chain(N=4, alpha="0.3"), {1: "0.4"}, order=4))
@@ -113,6 +117,7 @@ class FrequencyAnalysis(Shown, Tabled):
     strengths: Floats
     lines: tuple[SpectralLine, ...] = field(repr=False)
     window_frequencies: Floats = field(repr=False)
+    unresolved: float = 0.0
 
     def __repr__(self) -> str:
         by_seed = zip(self.seeds, self.frequencies, self.errors, strict=True)
@@ -124,6 +129,8 @@ class FrequencyAnalysis(Shown, Tabled):
             len(self.seeds), "independent frequency", "independent frequencies"
         )
         found = f"{independent}: {shown}; {lines}, drift {self.drift:.2g}"
+        if self.unresolved:
+            found += f"; too short to tell lines {self.unresolved:.2g} apart"
         return f"FrequencyAnalysis({chain}, T={self.T:.10g}, {found})"
 
     @property
@@ -160,7 +167,12 @@ class FrequencyAnalysis(Shown, Tabled):
             "phase": [line.phase for line in lines],
             "harmonic": names,
         }
-        return Table(columns, attributes(self, self.chain, T=self.T, seeds=self.seeds))
+        return Table(
+            columns,
+            attributes(
+                self, self.chain, T=self.T, seeds=self.seeds, unresolved=self.unresolved
+            ),
+        )
 
 
 @public
@@ -178,7 +190,7 @@ def frequency_analysis(
         scheme and step and looked at every half unit of time, so that its samples may be few.
         None of it is kept: memory does not grow with T.
     lines : at most, of each mode. level : of a mode's strongest line, below which none is taken;
-        dimensionless, as all numbers here. A mode whose strongest line is below 4e-15 of the
+        dimensionless, as all numbers here. A mode whose strongest line is below 1.5e-14 of the
         largest coordinate is at rest: rounding has lines, too.
     windows : equal parts of the time, for the drift.
     progress : called as (label, fraction).
@@ -474,6 +486,7 @@ def _identified(
     seeds: list[int] = []
     strengths: list[float] = []
     names: dict[int, tuple[int, ...]] = {}
+    apart = 0.0
     order = sorted(
         range(len(lines)), key=lambda i: -lines[i].frequency * lines[i].amplitude
     )
@@ -486,6 +499,7 @@ def _identified(
         nu = basis.combination(line.frequency, spread)
         free = len(seeds) < chain.N - 1
         if nu is None and free and basis.is_independent(line.frequency, spread):
+            apart = max(apart, basis.near(line.frequency, UNRESOLVED * 2 * math.pi / T))
             strengths.append(line.frequency * line.amplitude)
             basis.add(line.frequency, spread, strengths[-1] / strengths[0])
             errors.append(line.error)
@@ -494,17 +508,21 @@ def _identified(
         if nu is not None:
             names[i] = nu
     omega = np.array(basis.frequencies)
-    named = [_named(line, names.get(i), omega) for i, line in enumerate(lines)]
+    named = [
+        _named(replace(line, error=max(line.error, apart)), names.get(i), omega)
+        for i, line in enumerate(lines)
+    ]
     return FrequencyAnalysis(
         chain,
         T,
         tuple(seeds),
         omega,
-        np.array(errors),
+        np.maximum(errors, apart),
         _actions(named, omega),
         np.array(strengths) / max(strengths, default=1.0),
         tuple(named),
         drifts,
+        apart,
     )
 
 

@@ -109,6 +109,32 @@ def known_lines(torus, found):
     return off[near], np.array([line.error for line in found.lines])[near]
 
 
+@pytest.mark.parametrize(("law", "energy"), [({"alpha": "0.3"}, "0.01"), ({"beta": "0.5"}, "0.05")])
+def test_what_an_orbit_is_too_short_to_tell_apart_is_in_every_error(law, energy):
+    """2 omega_1 and omega_2 are a tenth to a quarter of a turn apart: one line in windows, 500 times further off than these said."""
+    chain = Chain(16, **law)
+    exact = refine(symfpu.torus_at_energy(chain, (1, 2), energy, order=4))
+    rates = np.abs(exact.harmonics @ np.array([float(w) for w in exact.frequencies]))
+    slowest, off = 2 * np.pi / chain.frequencies()[0], []
+    for turns in (5.5, 8, 12):
+        found = frequency_analysis(integrate(chain, *exact.state(), turns * slowest, step=0.1, samples=2))
+        assert 0 < found.unresolved < np.pi / found.T
+        assert "too short to tell lines" in repr(found)
+        for line in found.lines:
+            own = np.abs(exact.cosines[:, line.mode - 1]) > 0.3 * line.amplitude
+            off.append(np.abs(rates[own] - line.frequency).min() / line.error)
+    assert max(off) < 4
+    assert np.mean(np.array(off) < 1) > 0.95
+
+
+def test_a_breather_is_told_from_its_harmonics_at_any_length():
+    """Its line in mode 2 is 2 omega_1 to rounding, not a frequency next to it."""
+    breather = breather_at_amplitude(Chain(16, alpha="0.3"), 1, "0.5")
+    found = frequency_analysis(integrate(breather.chain, *breather.state(), 200, step=0.1, samples=2))
+    assert (found.seeds, found.unresolved) == ((1,), 0)
+    assert found.errors[0] < 1e-6
+
+
 def test_lines_within_four_turns_of_each_other_are_told_and_named():
     """2 omega_1 and omega_2 are 2.5 turns apart in mode 2; an orbit ten times as long has them ten widths apart."""
     chain = Chain(8, alpha="0.33")
