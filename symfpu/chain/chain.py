@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import count, product
+from operator import index
 from typing import Any
 
 import mpmath
@@ -290,7 +291,7 @@ class Chain:
 
         On a ring 2 |sin(q pi / N)|.
         """
-        half_turns = mpmath.mpf(abs(q)) / self.turn
+        half_turns = mpmath.mpf(abs(index(q))) / self.turn
         return 2 * mpmath.sinpi(half_turns)
 
     def small_parameter(self, numbers: Arithmetic = DOUBLES) -> Any:

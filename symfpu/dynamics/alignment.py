@@ -150,8 +150,8 @@ class AlignmentIndices(Shown, Gridded):
         mean, with the standard error of it if that is larger. decades : of time, cut to what the
         samples span and widened to LEAST_SAMPLES of them. Raises InputError.
         """
-        frames = self.frames
-        every = [fits(one.times, one.log10_gali, decades) for one in frames]
+        frames, last = self.frames, float(decades)
+        every = [fits(one.times, one.log10_gali, last) for one in frames]
         fitted = np.array(every)  # (frames, vectors - 1, 2)
         values = fitted[:, :, 0].mean(axis=0)
         errors = np.sqrt((fitted[:, :, 1] ** 2).mean(axis=0) / len(frames))
@@ -183,7 +183,7 @@ class AlignmentIndices(Shown, Gridded):
             lost = f"the orbit is off by {self.energy_error:.1g} of its energy"
             reason = f"{lost}: take a shorter step than {self.step:g}"
             return TorusDimension("undecided", None, math.nan, {}, reason)
-        return together([one._dimension(decades) for one in self.frames])
+        return together([one._dimension(float(decades)) for one in self.frames])
 
     def _dimension(self, decades: float) -> TorusDimension:
         """By the first frame alone."""

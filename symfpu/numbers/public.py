@@ -61,24 +61,27 @@ def public(thing: Public) -> Public:
 
 
 def _named(function: Any) -> Any:
-    """The function, with errors of Python's own explained.
+    """The function, with errors of Python's own explained, and overflow of doubles.
 
     Calls of public functions by each other are ours, and no argument of theirs is named. It keeps
     the globals of its module, where doctest looks for it; what it needs is in its closure.
     """
     explained, unknown, honest = misfit, has_nan, (SymfpuError, OSError)
-    thread = _THREAD
+    thread, large, errstate = _THREAD, too_large, np.errstate
 
     def call(*arguments: Any, **named: Any) -> Any:
         if thread.inside:
             return function(*arguments, **named)
         thread.inside = True
         try:
-            result = function(*arguments, **named)
+            with errstate(over="raise"):
+                result = function(*arguments, **named)
         except honest:
             raise
         except Exception as error:
             refusal = explained(function, arguments, named)
+            if refusal is None and isinstance(error, FloatingPointError):
+                refusal = large(function, arguments, named)
             if refusal is None:
                 raise
             raise refusal from error
@@ -126,6 +129,24 @@ def misfit(
                     name, one, wording(hint), f"see help({function.__name__})"
                 )
     return None
+
+
+def too_large(
+    function: Callable[..., Any], arguments: Iterable[Any], named: Mapping[str, Any]
+) -> InputError:
+    """The refusal of the largest argument, for a result that is beyond doubles."""
+    given = inspect.signature(function).bind(*arguments, **named).arguments
+    name = max(given, key=lambda each: _largest(given[each]))
+    allowed = "numbers whose results are within doubles, below 1e308"
+    return InputError(name, given[name], allowed, "take smaller ones")
+
+
+def _largest(value: Any) -> float:
+    """Of the numbers of an argument; -1 of what has none."""
+    try:
+        return float(np.max(np.abs(np.asarray(value, dtype=complex))))
+    except (TypeError, ValueError, OverflowError):
+        return -1.0
 
 
 def _fits_name(value: Any, hint: Any, name: str) -> bool:

@@ -37,6 +37,19 @@ def test_a_number_beyond_doubles_is_named():
         scaled([1.0], 10**400)
 
 
+@pytest.mark.parametrize("size", [1e200, 1e300])
+def test_an_argument_whose_results_are_beyond_doubles_is_named(size):
+    chain, Q = symfpu.Chain(8, alpha=1), [size] * 7
+    for call in (lambda: chain.accelerations(Q), lambda: chain.energy(np.array(Q), [0.0] * 7)):
+        with pytest.raises(InputError, match=r"^Q = .*within doubles"):
+            call()
+
+
+def test_an_integer_of_numpy_is_one():
+    chain = symfpu.Chain(8, alpha=1)
+    assert chain.linear_frequency(np.int64(3)) == chain.linear_frequency(3)
+
+
 def test_errors_of_a_function_that_was_passed_stay():
     def broken(words, fraction):
         raise KeyError(words)
