@@ -166,7 +166,7 @@ def newton_end(
     points: list[RefinedPoint] = []
     lost: dict[str, Loss] = {}
     factor = FACTOR if losses else WIDE_FACTOR
-    tori = _Tori(ray, one_family=bool(losses) and len(ray.seeds) == 1)
+    tori = _Tori(ray)
     for found in _followed(tori, guess, begin, end, most_harmonics, factor):
         if isinstance(found, _Stop):
             stop = found
@@ -305,13 +305,14 @@ def _followed(
 class _Tori:
     """The tori of a ray, each near a guess.
 
-    one_family : of breathers, those of the family from rest, the first of every place: what they
-    lose is not told from a change of the family then.
+    Breathers are those of the family from rest, the first of every place: Newton's method alone
+    goes over to other families in silence.
     """
 
-    def __init__(self, ray: Ray, *, one_family: bool) -> None:
+    def __init__(self, ray: Ray) -> None:
         self.ray = ray
-        self._walk = FromRest(ray.chain, *ray.seeds) if one_family else None
+        one, fixed = len(ray.seeds) == 1, not ray.chain.periodic
+        self._walk = FromRest(ray.chain, *ray.seeds) if one and fixed else None
 
     def refined(
         self, guess: Torus, place: float, most: int, tolerance: float = TOLERANCE

@@ -178,7 +178,7 @@ def solve(
     if as_json:
         print_json(record)
         return
-    say(f"verdict: {assessment.headline}")
+    say(f"verdict: {assessment.verdict}")
     print_solution(torus, record)
     if "energy_shares" in record:
         say(f"energy shared      {_shares_text(wish)}")

@@ -38,27 +38,6 @@ CURVE_STYLES: Mapping[str, dict[str, Any]] = {
 DASHED_STYLES = ("line", "beads")
 
 
-def plot_spectrum(
-    spectrum: Floats,
-    ax: Axes,
-    *,
-    label: str = "",
-    marker: str = "o",
-    floor: Floats | float = 0.0,
-) -> Axes:
-    """Normalised average energies of the modes against q, on a logarithmic scale.
-
-    spectrum : (N-1,). floor : in the unit of the spectrum, (N-1,) or one for all, as from
-    `spectrum_floor`; modes at or below it are not drawn.
-    """
-    q = np.arange(1, len(spectrum) + 1)
-    known = spectrum > floor
-    ax.semilogy(q[known], spectrum[known], marker=marker, label=label)
-    ax.set_xlabel(r"$q$")
-    ax.set_ylabel(r"$\overline{E}_q / E$")
-    return ax
-
-
 def plot_panel(panel: Panel, ax: Axes) -> Axes:
     """A panel of curves; of points that lie on each other the first ones are the largest."""
     labelled: set[tuple[int, str]] = set()

@@ -85,7 +85,7 @@ def cancellation_text(data: CancellationStudy) -> tuple[str, ...]:
 
 
 def _verdict(assessment: Assessment) -> str:
-    return f"Verdict: {assessment.headline} ({'; '.join(assessment.reasons)})."
+    return f"Verdict: {assessment.verdict} ({'; '.join(assessment.reasons)})."
 
 
 def _variants_table(data: CancellationStudy) -> str:

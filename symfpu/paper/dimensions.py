@@ -34,7 +34,6 @@ VECTORS = {"fig1": ("Fig. 1", 5), "fig2": ("Fig. 2", 5), "fig9": ("Fig. 9", 7)}
 GALI_STEP, CONFIRMING_STEP = 0.4, 0.8
 FORETOLD_TIME, FORETOLD_SAMPLES, FORETOLD_FRAMES = 1e11, 440, 4
 FIRST_LOOK = 5.0  # decades of time, from which it is looked which dimension frames show
-SETTLED_DECADES = 0.3  # of the last value of an index
 
 
 class Foretold(NamedTuple):
@@ -208,15 +207,3 @@ def slopes_text(found: AlignmentIndices) -> str:
     last = f"{found.times[-1]:.0e}"
     verdict = found.dimension().verdict
     return f"slopes {slopes} of G_2..G_{found.vectors} to t = {last}: {verdict}"
-
-
-def settled_after(
-    found: AlignmentIndices, k: int, decades: float = SETTLED_DECADES
-) -> float:
-    """The time after which log10 G_k stays within so many decades of its last value."""
-    values = found.log10_gali[:, k - 2]
-    off = np.abs(values - values[-1]) > decades
-    if not off.any():
-        return float(found.times[0])
-    last_off = int(np.flatnonzero(off)[-1])
-    return float(found.times[last_off + 1])

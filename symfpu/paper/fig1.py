@@ -149,7 +149,7 @@ def figure1_text(data: Figure1) -> tuple[str, ...]:
     return (
         markdown_table(["claim", "printed", "computed"], rows),
         f"{residuals}\nThe least is at order {data.best_order}.",
-        f"Verdict on the series: {data.assessment.headline} ({reasons}).",
+        f"Verdict on the series: {data.assessment.verdict} ({reasons}).",
         precision,
     )
 

@@ -102,7 +102,7 @@ def convergence_claim(data: Figure1, exact: Torus[Newton]) -> Claim:
     """The verdict on the series; that on the torus is another."""
     best = data.best_order
     last = max(data.residuals)
-    ours = f"the series is {data.assessment.headline} "
+    ours = f"the series is {data.assessment.verdict} "
     ours += f"(residual {data.residuals[best]:.0e} there, "
     ours += f"{data.residuals[last]:.0e} at order {last}); "
     ours += f"the torus itself exists, found by Newton's method to {exact.residual():.0e}"

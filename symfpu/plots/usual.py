@@ -310,7 +310,7 @@ USUAL = (
         _history_rows,
         lambda history: bool(history.differences()),
     ),
-    Usual(Assessment, residuals, lambda found: found.headline, _assessment_rows),
+    Usual(Assessment, residuals, lambda found: found.verdict, _assessment_rows),
     Usual(
         Orbit,
         _energy_series,

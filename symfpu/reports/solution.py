@@ -53,7 +53,7 @@ def solution_record(
         **_known_by_origin(solution),
     }
     if assessment is not None:
-        record |= {"verdict": assessment.headline, "assessment": assessment.record()}
+        record |= {"verdict": assessment.verdict, "assessment": assessment.record()}
     return record if found is None else record | multipliers_record(found)
 
 

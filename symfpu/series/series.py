@@ -341,16 +341,6 @@ def require_series(series: object) -> None:
         raise InputError("series", f"of {chain!r}", allowed, advice)
 
 
-def require_waves(series: object) -> LindstedtSeries:
-    """InputError for what is no LindstedtSeries of a ring."""
-    found = require_any_series(series)
-    if not found.chain.periodic:
-        allowed = "the series of a chain with ends='periodic'"
-        advice = "make one with lindstedt; fixed ends have solve_amplitudes(series)"
-        raise InputError("series", f"of {found.chain!r}", allowed, advice)
-    return found
-
-
 def require_any_series(series: object) -> LindstedtSeries:
     """InputError for what is no LindstedtSeries, whatever the ends of its chain."""
     if not isinstance(series, LindstedtSeries):

@@ -150,19 +150,14 @@ class Assessment(Shown, Tabled):
         return 1 / self.growth if self.growth else math.inf
 
     @property
-    def headline(self) -> str:
-        """The verdict in a few words."""
+    def verdict(self) -> str:
+        """The word, with the best order where there is one: what the command line prints."""
         if self.word == "asymptotic":
             return f"asymptotic, best at order {self.best_order}"
         return self.word
 
-    @property
-    def verdict(self) -> str:
-        """The word, with the best order where there is one: what the command line prints."""
-        return self.headline
-
     def __repr__(self) -> str:
-        return f"Assessment({self.headline}: {'; '.join(self.reasons)})"
+        return f"Assessment({self.verdict}: {'; '.join(self.reasons)})"
 
     def record(self) -> dict[str, Any]:
         """All of it as JSON can hold it; numbers of more than 15 digits as strings."""
@@ -172,7 +167,7 @@ class Assessment(Shown, Tabled):
             "kind": type(self).__name__,
             "symfpu_version": __version__,
             **({} if self.chain is None else self.chain.typed),
-            "verdict": self.headline,
+            "verdict": self.verdict,
             "reasons": list(self.reasons),
             "best_order": self.best_order,
             "order": self.order,

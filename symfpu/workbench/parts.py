@@ -183,7 +183,7 @@ def _judgement(found: Solved, verdict: Assessment | None) -> Iterator[Part]:
         yield Verdict(NO_SERIES, refined)
         yield Picture(RESIDUALS, "", NO_SERIES)
         return
-    yield Verdict(verdict.headline, (*refined, *verdict.reasons))
+    yield Verdict(verdict.verdict, (*refined, *verdict.reasons))
     yield _picture(RESIDUALS, partial(residuals, verdict))
 
 

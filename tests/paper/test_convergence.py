@@ -200,7 +200,7 @@ def test_the_study_of_fig_1():
     assert 1 / study.pole == pytest.approx(RATIO, rel=TERM_RATIO)
     assert study.divisor == pytest.approx(3.408e-5, rel=FOUR_DIGITS)
     assert study.coincidence == (19523, -9813)
-    assert study.assessment.headline == "asymptotic, best at order 12"
+    assert study.assessment.verdict == "asymptotic, best at order 12"
     assert tuple(study.resummed) == tuple(study.amplitudes) == SHOWN_ORDERS
     assert study.resummed[42] < SUMMED_FIG1_FURTHER < study.residuals[12] < study.residuals[42]
     assert len(labels) == 2 + 5 + 1
@@ -233,7 +233,7 @@ def test_a_range_without_the_limit_is_refused():
 
 def test_the_study_of_fig_9():
     study = breather_study()
-    assert study.assessment.headline == "not a torus"
+    assert study.assessment.verdict == "not a torus"
     assert (study.orbit.amplitude, study.singularity, study.exponent) == pytest.approx((PERIODIC, END, 0.5), abs=SERIES_END)
     assert study.spread < END_SPREAD
     assert float(study.at_printed.frequency) > float(study.orbit.frequency)

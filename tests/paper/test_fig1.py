@@ -41,7 +41,7 @@ def data(**changes):
     upper = 1e-1 * 2.0 ** np.minimum(0.1 * (np.arange(31.0) - 14), 0) * np.where(np.arange(31) > 14, lower / lower[14], 1.0)
     errors = {k: (np.array([0.0, -1e-4]), np.array([0.0, 1e-2])) for k in (12, 24)}
     differences = {k: (10.0**-k, 1e-12) for k in range(2, 8, 2)} | {k: (1e-7 * (1 + abs(k - 24)), 1e-12) for k in range(8, 30, 2)}
-    words = SimpleNamespace(word="converged", headline="converged")
+    words = SimpleNamespace(word="converged", verdict="converged")
     texts = dict.fromkeys(("best_difference", "cancellation", "term_size", "harmonic_error", "energy_error"), "ours")
     given = {"sums": (upper, lower), "errors": errors, "differences": differences, "assessment": words, "best_order": 12, "torus": Torus()}
     return SimpleNamespace(**given | {"residuals": {2: 1e-2, 12: 1e-5, 30: 1e-4}, "claims": lambda: texts} | changes)
@@ -76,7 +76,7 @@ def test_settling_has_an_order_and_a_level(best, level, verdict):
 
 
 def test_an_asymptotic_series_does_not_behave_as_a_convergent_one():
-    words = SimpleNamespace(word="asymptotic", headline="asymptotic, best at order 12")
+    words = SimpleNamespace(word="asymptotic", verdict="asymptotic, best at order 12")
     found = fig1_claims.convergence_claim(data(assessment=words), SimpleNamespace(residual=lambda: 1e-14))
     assert found.verdict == FAILS
     assert "residual 1e-05 there, 1e-04 at order 30" in found.ours
@@ -119,7 +119,9 @@ def test_amplitudes_of_order_24():
     rows = {22: (0.58488971, 0.41155524), 24: (0.58488972, 0.41155523)}
 
     def verdict(history):
-        return fig1_claims.amplitudes_claim(SimpleNamespace(origin=SimpleNamespace(history=history), amplitudes={1: 0.58488971, 2: 0.41155524})).verdict
+        return fig1_claims.amplitudes_claim(
+            SimpleNamespace(origin=SimpleNamespace(history=history), amplitudes={1: 0.58488971, 2: 0.41155524})
+        ).verdict
 
     assert verdict(rows) == HOLDS
     assert verdict(rows | {24: (0.5849, 0.4116)}) == PARTLY

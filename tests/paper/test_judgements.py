@@ -13,7 +13,6 @@ from symfpu.paper.dimensions import (
     TorusForecast,
     confirms,
     indices_panel,
-    settled_after,
 )
 from symfpu.paper.judgements import (
     cancellation_claim,
@@ -26,7 +25,7 @@ from symfpu.paper.judgements import (
     same_profile,
 )
 from tests.paper.cases import alignment, exponential
-from tests.tolerances import SAMPLED_DECADES, WHOLE_NUMBERS
+from tests.tolerances import WHOLE_NUMBERS
 
 
 def decades_off(mode, decades):
@@ -183,9 +182,3 @@ def test_what_is_foretold_is_drawn_beyond_what_was_integrated():
     assert {curve.style for name, curve in foretold.items() if name != "foretold from"} == {"dotted"}
     assert indices_panel("fig1e", "", FigureIndices(found)).table()[0] == made.table()[0]
     assert len(indices_panel("fig1e", "", FigureIndices(found)).curves) == 4
-
-
-def test_an_index_settles_where_it_stays():
-    found = alignment(2, T=1e6)
-    assert settled_after(found, 2) == 1.0
-    assert settled_after(found, 3) == pytest.approx(1e6 * 10**-0.3, rel=SAMPLED_DECADES)  # 400 samples of six decades

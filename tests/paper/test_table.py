@@ -115,7 +115,7 @@ def test_figure_1_is_computed_from_the_printed_frequencies(computed):
     assert data.torus.origin.series.frequencies == tuple(Fraction(w) for w in REFERENCE.frequencies)
     assert labels[0].startswith("fig1")
     assert data.residuals[data.best_order] == min(data.residuals.values())
-    assert data.assessment.headline == "asymptotic, best at order 12"
+    assert data.assessment.verdict == "asymptotic, best at order 12"
     assert tuple(data.residuals) == tuple(range(2, 31))
     assert data.torus.digits == FIG1_DIGITS
     assert 0 < data.rounding < AMPLITUDE

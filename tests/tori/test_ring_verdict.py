@@ -24,7 +24,7 @@ def test_a_standing_wave_is_judged_as_that_of_fixed_ends(omega, order):
     between = assess(fixed, solve_amplitudes(fixed))
     waves = lindstedt(Chain(16, alpha="0.3", ends="periodic"), (1, -1), (omega, omega), order)
     around = assess(waves, solve_amplitudes(waves))
-    assert around.headline == between.headline
+    assert around.verdict == between.verdict
     assert around.growth == pytest.approx(between.growth, rel=RESUMMED)
     assert around.best_order == between.best_order
     if np.isfinite(between.root_uncertainty):

@@ -67,9 +67,9 @@ def judged(name):
 )
 def test_the_word_for_a_known_case(name):
     _, assessment = judged(name)
-    assert assessment.headline == CASES[name][1]
+    assert assessment.verdict == CASES[name][1]
     assert assessment.word == CASES[name][1].split(",")[0]
-    assert repr(assessment).startswith(f"Assessment({assessment.headline}: residual of the equations of motion")
+    assert repr(assessment).startswith(f"Assessment({assessment.verdict}: residual of the equations of motion")
 
 
 @pytest.mark.long
@@ -77,7 +77,7 @@ def test_the_breather_of_fig_9_is_not_a_torus():
     """Its series ends below the printed amplitude, at A = 1.287: the root at order 242 is one of the polynomial only."""
     torus = solved(FIG9_BREATHER, FIG9_BREATHER.order)
     assessment = assess(torus.origin.series, torus)
-    assert assessment.headline == "not a torus"
+    assert assessment.verdict == "not a torus"
     assert "does not settle" in assessment.reasons[-2]
     assert assessment.root_uncertainty > 1e-3
     assert assessment.record()["verdict"] == "not a torus"

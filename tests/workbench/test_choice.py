@@ -44,7 +44,7 @@ def test_the_lines_of_python_make_the_same_torus(choice):
     assert dict(torus.amplitudes) == dict(found.best.amplitudes)
     assert tuple(torus.frequencies) == tuple(found.best.frequencies)
     assert float(torus.energy()) == float(found.best.energy())
-    assert names["verdict"].headline == judged(found).headline
+    assert names["verdict"].verdict == judged(found).verdict
 
 
 @pytest.mark.parametrize("choice", CHOICES, ids=repr)
