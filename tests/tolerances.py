@@ -469,9 +469,6 @@ SCATTER = 0.25
 # Sums of mode energies against H, which has anharmonic terms.
 HARMONIC_SHARE = 0.03
 
-# Samples of times: six decades in 400.
-SAMPLED_DECADES = 0.04
-
 # Minima between samples, by parabolas: their values, times, and what is read off at them.
 RETURN_VALUE, RETURN_TIME, RETURN_PLACE = 1e-6, 1e-5, 1e-4
 

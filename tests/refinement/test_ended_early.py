@@ -119,7 +119,7 @@ def whole_then_none(monkeypatch):
 def test_a_border_does_not_take_it_for_a_torus(solver, monkeypatch):
     """There a smaller step is tried."""
     ray, place = Ray(Chain(8, beta="0.3"), (1, 2), 2), 0.01
-    first, tori = ray.torus(place, None), newton_end._Tori(ray, one_family=False)
+    first, tori = ray.torus(place, None), newton_end._Tori(ray)
     assert tori.refined(first, place, newton_end.MOST_HARMONICS).warnings == ()
     solver(1, 1, 1, 0.0)
     early = refine(guess(), amplitudes=WANTED)

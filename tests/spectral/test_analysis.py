@@ -132,7 +132,7 @@ def test_a_breather_is_told_from_its_harmonics_at_any_length():
     breather = breather_at_amplitude(Chain(16, alpha="0.3"), 1, "0.5")
     found = frequency_analysis(integrate(breather.chain, *breather.state(), 200, step=0.1, samples=2))
     assert (found.seeds, found.unresolved) == ((1,), 0)
-    assert found.errors[0] < 1e-6
+    assert found.errors[0] < CHANNEL_LINE
 
 
 def test_lines_within_four_turns_of_each_other_are_told_and_named():
