@@ -32,20 +32,17 @@ def check_refused(verify, data, folder, why):
     assert any(word in found for word in why.split("|")), found
 
 
-def places_of(value, place=()):
+def parts_of(value, place=()):
+    """Everything in a certificate, and the whole, each with its place."""
+    yield place, value
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, inner in items:
+        yield from parts_of(inner, (*place, key))
+
+
+def places_of(value):
     """The places of all numbers and texts in a certificate."""
-    if not isinstance(value, dict | list):
-        yield place
-        return
-    for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
-        yield from places_of(inner, (*place, key))
-
-
-def value_at(data, place):
-    """What stands at a place."""
-    for key in place:
-        data = data[key]
-    return data
+    return [place for place, part in parts_of(value) if not isinstance(part, dict | list)]
 
 
 def altered(data, place, change):
@@ -56,6 +53,11 @@ def altered(data, place, change):
         inside = inside[key]
     inside[place[-1]] = change(inside[place[-1]])
     return other
+
+
+def replaced(data, place, value):
+    """A copy with another value at a place, which may be the whole."""
+    return altered(data, place, lambda _: value) if place else value
 
 
 def moved(value):

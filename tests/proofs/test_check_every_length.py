@@ -9,7 +9,7 @@ from symfpu import coupling_sequence, excitation_sequence, prove_for_all_N
 from symfpu.proofs import check_every_length
 from symfpu.proofs.check_every_length import verify
 from symfpu.proofs.reading import CertificateError
-from tests.proofs.certificate_files import altered, places_of, reason, sealed, value_at
+from tests.proofs.certificate_files import altered, parts_of, reason, sealed
 
 
 def refused(folder, data):
@@ -67,8 +67,7 @@ def test_an_exception_cannot_be_left_out_or_moved(tmp_path):
 
 def numbers(data):
     """Where numbers, and orders that are null, stand in a certificate."""
-    places = ((place, value_at(data, place)) for place in places_of(data) if place != ("digest",))
-    return [place for place, value in places if value is None or isinstance(value, int)]
+    return [place for place, value in parts_of(data) if place != ("digest",) and isinstance(value, int | None)]
 
 
 def check_every_number(data, folder, changes, places=None):

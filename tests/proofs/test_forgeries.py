@@ -1,13 +1,12 @@
 """Certificates of the prover, checked as they are and with every field altered, the digest made to fit."""
 
-import copy
 import json
 
 import pytest
 
 from symfpu import prove_propagation
 from symfpu.proofs.check_propagation import verify
-from tests.proofs.certificate_files import reason, sealed
+from tests.proofs.certificate_files import parts_of, reason, replaced, sealed
 
 CASES = {
     "proved": (9, (2, 4), 3, {}),
@@ -15,7 +14,7 @@ CASES = {
     "breather": (12, (5,), 4, {}),
     "potential": (6, (2,), 3, {"potential": "toda:1/2"}),
 }
-STILL_TRUE = "potential: another text"  # a name that the checker does not know, with its coefficients
+STILL_TRUE = ("potential",), "toda:0.5x"  # a name that the checker does not know, with its coefficients
 
 
 @pytest.fixture(scope="module", params=[pytest.param(name, marks=[pytest.mark.long] * (name == "breather")) for name in CASES])
@@ -29,38 +28,27 @@ def is_valid(certificate, folder):
 
 
 def alterations(value):
-    """The value with one thing altered anywhere inside: a description and the altered copy."""
+    """What to put in the place of a part."""
     if isinstance(value, dict):
-        for key, inner in value.items():
-            yield f"without {key}", {k: v for k, v in value.items() if k != key}
-            for what, altered in alterations(inner):
-                yield f"{key}: {what}", value | {key: altered}
-        yield "another key", value | {"another": 1}
+        yield from ({name: part for name, part in value.items() if name != key} for key in value)
+        yield value | {"another": 1}
     elif isinstance(value, list):
-        for i, inner in enumerate(value):
-            yield f"without [{i}]", value[:i] + value[i + 1 :]
-            for what, altered in alterations(inner):
-                yield f"[{i}] {what}", [*value[:i], altered, *value[i + 1 :]]
-        yield "longer", [*value, copy.deepcopy(value[-1]) if value else 1]
+        yield from (value[:i] + value[i + 1 :] for i in range(len(value)))
+        yield [*value, value[-1] if value else 1]
     elif isinstance(value, int):
-        yield "+ 1", value + 1
-        yield "negative", -value - 1
-        yield "true", True
-        yield "as text", str(value)
-    elif isinstance(value, str):
-        yield "another text", value + "x"
-        yield "null", None
-    elif value is None:
-        yield "zero", 0
+        yield from (value + 1, -value - 1, True, str(value))
+    else:
+        yield from (0,) if value is None else (value + "x", None)
 
 
 def test_every_alteration_is_found_without_the_digest(certificate, tmp_path):
     assert is_valid(certificate, tmp_path)
-    count = 0
-    for what, altered in alterations({key: value for key, value in certificate.items() if key != "digest"}):
-        count += 1
-        assert not is_valid(sealed(altered), tmp_path) or what == STILL_TRUE, what
-    assert count > 100
+    contents = {key: value for key, value in certificate.items() if key != "digest"}
+    altered = [(place, other) for place, value in parts_of(contents) for other in alterations(value)]
+    assert len(altered) > 100
+    for place, other in altered:
+        forged = sealed(replaced(contents, place, other))
+        assert not is_valid(forged, tmp_path) or (place, other) == STILL_TRUE, (place, other)
 
 
 def test_another_witness_that_is_right_is_accepted(tmp_path):

@@ -146,3 +146,4 @@ def test_a_certificate_finds_its_checker(kind, tmp_path):
     assert verify_certificate(tmp_path / "c.json") == VERIFY[kind](tmp_path / "c.json")
     data = json.loads((tmp_path / "c.json").read_text())
     assert "digest" in reason(verify_certificate, data | {"digest": moved(data["digest"])}, tmp_path)
+    assert "unknown" in reason(verify_certificate, sealed(data | {"more": 1}), tmp_path)

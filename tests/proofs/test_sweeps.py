@@ -9,7 +9,7 @@ from math import comb
 
 import pytest
 
-from symfpu import InputError, SweepIncomplete, TooLarge, sweep_propagation
+from symfpu import SweepIncomplete, TooLarge, sweep_propagation
 from symfpu.proofs import sweeps
 from symfpu.reports.proofs import sweep_markdown
 
@@ -80,15 +80,6 @@ def test_summary_counts_what_the_sweep_holds(beta):
     text = sweep_markdown(beta)
     assert f"{len(beta.cases)} seed sets" in text
     assert text.count(" -> ") == 1 + sum(len(case.exceptions) for case in beta.cases)
-
-
-def test_a_file_of_the_version_before_is_refused_by_name(tmp_path, threads):
-    """As 0.1.0 wrote it before sweeps were of any function."""
-    file, old = tmp_path / "sweep.jsonl", '{"format": "symfpu propagation sweep", "schema": 1, "model": "alpha", "order": 1}\n'
-    file.write_text(old)
-    with pytest.raises(InputError, match=r"its format is 'symfpu propagation sweep'.*name another file, or remove this one"):
-        sweep_propagation([4], 1, 1, executor=threads, file=file)
-    assert file.read_text() == old
 
 
 HARD = {(4, (1, 3)), (5, (2,))}  # seed sets that fail in the tests below
