@@ -38,7 +38,6 @@ BORROWED = {
     "plots": "breathers notebook sweeps",
     "proofs": "algebra certified chain reports",
     "refinement": "borders numbers",
-    "saved": "files",
     "series": "algebra chain notebook numbers proofs tori",
     "spectral": "files",
     "sweeps": "algebra files",

@@ -246,10 +246,11 @@ def test_tori_of_rings_come_back(made, tmp_path):
     torus = made()
     bundle = load(save(tmp_path / "torus", torus))
     assert same(bundle.torus, torus)
-    assert np.array_equal(bundle.torus.Q([0.0, 3.3]), torus.Q([0.0, 3.3]))
-    first = bundle.test_vectors[0]
-    assert [complex(Q) for Q in first.Q] == torus.Q(0.0).tolist()
-    assert len(first.P) == torus.chain.N - 1
+    points = bundle.test_vectors
+    times = [float(point.t) for point in points]
+    assert len(times) == 3
+    assert torus.Q(times).tolist() == [list(map(complex, point.Q)) for point in points]
+    assert torus.P(times).tolist() == [list(map(complex, point.P)) for point in points]
 
 
 def test_the_ends_stand_in_the_file_of_a_ring_alone(tmp_path):
@@ -260,38 +261,14 @@ def test_the_ends_stand_in_the_file_of_a_ring_alone(tmp_path):
     assert "ends" not in body["series"]
 
 
-@pytest.fixture(scope="module")
-def torus():
-    """Two seeds in no order of the chain's, phases, a doubt, and numbers that are no short decimals."""
-    series = lindstedt(Chain(8, alpha="1/3", beta="0.2"), (1, 3), (Fraction("0.3904"), Fraction("1.1118")), 4)
-    refined = refine(solve_amplitudes(series, phases={1: 0.4, 3: -1.3}), tolerance=1e-9)
-    return replace(refined, warnings=('a "doubt", \u00b5 = 1e-3',))
-
-
-@pytest.fixture
-def file(torus, tmp_path):
-    return save(tmp_path / "torus", torus)
-
-
-def test_frequencies_found_by_newtons_method_come_back_exactly(torus, tmp_path):
+def test_frequencies_found_by_newtons_method_come_back_exactly(tmp_path):
     """Of 25 digits, as those of prescribed amplitudes are; and odd numbers."""
+    series = lindstedt(Chain(8, alpha="1/3", beta="0.2"), (1, 3), (Fraction("0.3904"), Fraction("1.1118")), 4)
     odd = replace(
-        torus,
+        refine(solve_amplitudes(series), tolerance=1e-9),
         frequencies=(Fraction(3**50, 3**51 + 1), Fraction("1.111842345678901234567890")),
         phases={1: -1e-300, 3: 0.1 + 0.2},
         origin=Newton((), ()),
         warnings=(),
     )
     assert same(load(save(tmp_path / "odd", odd)).torus, odd)
-
-
-def test_its_test_vectors_are_the_torus(torus, file):
-    points = load(file).test_vectors
-    times = [float(point.t) for point in points]
-    assert len(times) == 3
-    assert torus.Q(times).tolist() == [list(map(complex, point.Q)) for point in points]
-    assert torus.P(times).tolist() == [list(map(complex, point.P)) for point in points]
-
-
-def test_what_a_later_version_adds_is_ignored(torus, file):
-    assert same(load(forged(file, lambda m, b: b["torus"].update(news=1))).torus, torus)
