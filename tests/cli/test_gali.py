@@ -80,18 +80,25 @@ def test_a_folder_gets_the_table_and_the_pictures(capsys, kept, tmp_path):
     assert all(len(row) == 8 for row in rows)
 
 
-def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, kept, tmp_path):
-    words = ("gali", str(kept), "--samples", "64", "--vectors", "3", "--checkpoint", str(tmp_path / "run"), "--json")
-    first, second = (run(capsys, *words, "--time", "200") for _ in range(2))
-    assert first == second
-    assert first[0] == 0
-    assert json.loads(run(capsys, *words, "--time", "300")[1])["time"] == 300
-    begun = (tmp_path / "run").stat().st_mtime_ns
-    err = refusal(capsys, *words, "--time", "200")
-    assert "a checkpoint of the same alignment indices (steps is 750 in it, 500 here)" in err
-    assert (tmp_path / "run").stat().st_mtime_ns == begun
-    err = refusal(capsys, "gali", str(tmp_path / "run"), "--time", "200")
-    assert "is a checkpoint of alignment indices" in err
+# of what, two times with their steps, and options
+CHECKPOINTS = {
+    "gali": ("alignment indices", (200, 500), (300, 750), ["--samples", "64", "--vectors", "3"]),
+    "orbit": ("orbit", (50, 250), (60, 300), ["--samples", "9"]),
+}
+
+
+@pytest.mark.parametrize("verb", CHECKPOINTS)
+def test_a_checkpoint_is_taken_up_and_refused_for_another_run(verb, capsys, kept, tmp_path):
+    kind, (time, here), (longer, there), options = CHECKPOINTS[verb]
+    file = tmp_path / "run"
+    words = (verb, kept, *options, "--checkpoint", file, "--time")
+    first, second, on = (answer(capsys, *words, t) for t in (time, time, longer))
+    assert first | {"seconds": 0} == second | {"seconds": 0}
+    assert (on["time"], on.get("energy")) == (longer, first.get("energy"))
+    begun = file.stat().st_mtime_ns
+    assert f"a checkpoint of the same {kind} (steps is {there} in it, {here} here)" in refusal(capsys, *words, time)
+    assert file.stat().st_mtime_ns == begun
+    assert re.search(f"is a checkpoint of (an )?{kind}", refusal(capsys, verb, file, "--time", time))
 
 
 @pytest.mark.long

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from symfpu import Chain, integrate, lindstedt, packet_state, particle_state, random_state, refine, save, solve_amplitudes
-from tests.cli.running import answer, refusal, shown
+from tests.cli.running import answer, shown
 from tests.tolerances import ENERGY_SHORT_STEPS, ORBIT
 
 
@@ -53,16 +53,6 @@ def test_samples_are_written_as_csv_and_npz(capsys, saved, tmp_path):
     assert held["Q"].shape == held["P"].shape == (len(rows), 7)
     assert values[-1, 0] == 50
     assert sorted(path.name for path in tmp_path.iterdir()) == ["orbit.csv", "orbit.npz"]
-
-
-def test_a_checkpoint_is_taken_up_and_refused_for_another_run(capsys, saved, tmp_path):
-    options = ("orbit", saved, "--checkpoint", str(tmp_path / "run"), "--samples", "9")
-    first, second = (answer(capsys, *options, "--time", "50") for _ in range(2))
-    assert first["energy_error"] == second["energy_error"]
-    longer = answer(capsys, *options, "--time", "60")
-    assert (longer["time"], longer["energy"]) == (60, first["energy"])
-    err = refusal(capsys, *options, "--time", "50")
-    assert "a checkpoint of the same orbit (steps is 300 in it, 250 here)" in err
 
 
 CHAINS = {

@@ -1,5 +1,6 @@
 """Names of files and folders that cannot be: every verb says so in one line, code 2, and writes nothing."""
 
+from itertools import product
 from shlex import split
 
 import pytest
@@ -12,36 +13,29 @@ SMALL_SWEEP = split("sweep --longest 3 --largest 1 --order 1")
 FAMILY = split("family -N 8 --alpha 0.4 --seeds 3 --to-energy 0.011 --from-energy 0.01")
 SOLVE = split("solve -N 8 --alpha 0.3 --seeds 1 --omega 0.3905 --order 4")
 
-# What stands for the saved torus is "@"; the bad name comes last.
-FILES = {
-    "prove": ["prove", *RULE, "-o"],
-    "solve": [*SOLVE, "-o"],
-    "refine": ["refine", "@", "-o"],
-    "export": ["export", "@", "--lang", "c", "-o"],
-    "orbit": ["orbit", "@", "--time", "10", "-o"],
-    "orbit, checkpoint": ["orbit", "@", "--time", "10", "--checkpoint"],
-    "orbit, save": ["orbit", "@", "--time", "10", "--save"],
-    "gali, checkpoint": ["gali", "@", "--time", "100", "--checkpoint"],
-    "sweep": [*SMALL_SWEEP, "-o"],
-    "sweep, cases": [*SMALL_SWEEP, "--file"],
-}
-FOLDERS = {
-    "family": [*FAMILY, "-o"],
-    "gali": ["gali", "@", "--time", "100", "-o"],
-    "reproduce": ["reproduce", "section5", "-o"],
-}
-READ = {
-    "show": ["show"],
-    "verify": ["verify"],
-    "certify": ["certify"],
-    "refine": ["refine"],
-    "export": ["export", "--lang", "c", "-o", "unwritten.c"],
-    "orbit": ["orbit", "--time", "10"],
-    "gali": ["gali", "--time", "100"],
-}
-NO_FILES = {"empty": "", "blank": "  "} | {name: name for name in (".", "folder", "folder.csv", "none/x.csv", "file/x.csv")}
-NO_FOLDERS = {"empty": "", "blank": "  ", "file": "file", "below a file": "file/x"}
-NO_INPUT = {"empty": ""} | {name: name for name in (".", "folder", "none", "none/x", "file/x")}
+# "@" stands for the saved torus, "?" for the bad name
+FILES = [
+    ["prove", *RULE, "-o", "?"],
+    [*SOLVE, "-o", "?"],
+    ["refine", "@", "-o", "?"],
+    ["export", "@", "--lang", "c", "-o", "?"],
+    *(["orbit", "@", "--time", "10", option, "?"] for option in ("-o", "--checkpoint", "--save")),
+    ["gali", "@", "--time", "100", "--checkpoint", "?"],
+    *([*SMALL_SWEEP, option, "?"] for option in ("-o", "--file")),
+]
+FOLDERS = [[*FAMILY, "-o", "?"], ["gali", "@", "--time", "100", "-o", "?"], ["reproduce", "section5", "-o", "?"]]
+READ = [
+    *([verb, "?"] for verb in ("show", "verify", "certify", "refine")),
+    ["export", "?", "--lang", "c", "-o", "unwritten.c"],
+    ["orbit", "?", "--time", "10"],
+    ["gali", "?", "--time", "100"],
+]
+NO_FILES = ("", "  ", ".", "folder", "folder.csv", "none/x.csv", "file/x.csv")
+NO_FOLDERS = ("", "  ", "file", "file/x")
+NO_INPUT = ("", ".", "folder", "none", "none/x", "file/x")
+TYPED = [
+    (name, words) for verbs, names in ((FILES, NO_FILES), (FOLDERS, NO_FOLDERS), (READ, NO_INPUT)) for words, name in product(verbs, names)
+]
 
 
 @pytest.fixture(scope="module")
@@ -59,31 +53,11 @@ def there(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("not a folder")
 
 
-def refused(capsys, tmp_path, argv):
+@pytest.mark.parametrize(("name", "words"), TYPED)
+def test_a_bad_name_is_refused_and_nothing_is_written(name, words, saved, capsys, tmp_path):
     before = sorted(path.name for path in tmp_path.rglob("*"))
-    refusal(capsys, *argv)
+    refusal(capsys, *({"@": saved, "?": name}.get(word, word) for word in words))
     assert sorted(path.name for path in tmp_path.rglob("*")) == before
-
-
-@pytest.mark.parametrize("name", NO_FILES.values(), ids=NO_FILES)
-@pytest.mark.parametrize("verb", FILES)
-def test_no_file_to_write(verb, name, saved, capsys, tmp_path):
-    argv = [saved if word == "@" else word for word in FILES[verb]]
-    refused(capsys, tmp_path, [*argv, name])
-
-
-@pytest.mark.parametrize("name", NO_FOLDERS.values(), ids=NO_FOLDERS)
-@pytest.mark.parametrize("verb", FOLDERS)
-def test_no_folder_to_write(verb, name, saved, capsys, tmp_path):
-    argv = [saved if word == "@" else word for word in FOLDERS[verb]]
-    refused(capsys, tmp_path, [*argv, name])
-
-
-@pytest.mark.parametrize("name", NO_INPUT.values(), ids=NO_INPUT)
-@pytest.mark.parametrize("verb", READ)
-def test_no_file_to_read(verb, name, capsys, tmp_path):
-    first, *others = READ[verb]
-    refused(capsys, tmp_path, [first, name, *others])
 
 
 def test_the_functions_refuse_an_empty_name_too():
