@@ -29,20 +29,27 @@ def program(verb, before="pass"):
     return [sys.executable, "-c", RUN.format(verb=verb, before=before)]
 
 
+def ended(command):
+    """The code, standard output and standard error of a process."""
+    process = subprocess.run(command, capture_output=True, text=True, check=False)
+    return process.returncode, process.stdout, process.stderr
+
+
+def interrupted_at_import(verb, module):
+    return ended(program(verb, f"exec({AT_IMPORT.format(module=module)!r})"))
+
+
 @pytest.mark.parametrize("module", ["symfpu.cli.application", pytest.param("rich.progress", marks=pytest.mark.long)])
 def test_the_interrupt_key_while_modules_are_loaded(module):
-    hook = f"exec({AT_IMPORT.format(module=module)!r})"
-    ended = subprocess.run(program(VERB, hook), capture_output=True, text=True, check=False)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (130, "", LINE)
+    assert interrupted_at_import(VERB, module) == (130, "", LINE)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("module", ["typer", "numpy", "symfpu.series.lindstedt", "scipy.special", "numba.core"])
 def test_the_interrupt_key_while_a_verb_is_loaded(module):
-    hook = f"exec({AT_IMPORT.format(module=module)!r})"
-    ended = subprocess.run(program(SOLVE, hook), capture_output=True, text=True, check=False)
-    assert (ended.returncode, ended.stdout) == (130, "")
-    *told, last = ended.stderr.splitlines()
+    code, out, err = interrupted_at_import(SOLVE, module)
+    assert (code, out) == (130, "")
+    *told, last = err.splitlines()
     assert last.startswith("symfpu: interrupted: nothing is kept")
     assert all("series" in line for line in told)  # progress
 
@@ -60,8 +67,7 @@ sys.addaudithook(look)
 
 def test_the_interrupt_key_while_a_class_is_made():
     """Python 3.11 turns it into a RuntimeError there."""
-    ended = subprocess.run(program(SOLVE, f"exec({AT_A_CLASS!r})"), capture_output=True, text=True, check=False)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (130, "", LINE)
+    assert ended(program(SOLVE, f"exec({AT_A_CLASS!r})")) == (130, "", LINE)
 
 
 @pytest.mark.long
@@ -102,15 +108,14 @@ def test_closed_standard_output_is_refused_before_anything_is_computed(capsys, m
 
 @pytest.mark.long
 def test_closed_streams_of_a_process():
-    def ended(verb, closed):
-        return subprocess.run(["sh", "-c", f'exec "$@" {closed}', "sh", *program(verb)], capture_output=True, text=True, check=False)
+    def with_closed(streams, verb):
+        return ended(["sh", "-c", f'exec "$@" {streams}', "sh", *program(verb)])
 
-    closed = ended(VERB, ">&-")
-    assert (closed.returncode, len(closed.stderr.splitlines())) == (2, 1)
-    assert "standard output is closed" in closed.stderr
-    silent = ended(["conquer"], "2>&-")
-    assert (silent.returncode, silent.stdout, silent.stderr) == (2, "", "")
-    assert ended(VERB, ">&- 2>&-").returncode == 2
+    code, _, err = with_closed(">&-", VERB)
+    assert (code, len(err.splitlines())) == (2, 1)
+    assert "standard output is closed" in err
+    assert with_closed("2>&-", ["conquer"]) == (2, "", "")
+    assert with_closed(">&- 2>&-", VERB)[0] == 2
 
 
 @pytest.mark.parametrize("many", [1, 1000])

@@ -87,12 +87,6 @@ def test_files_without_a_torus_are_refused(capsys, tmp_path):
     assert "FILE" in refusal(capsys, "refine", series)
 
 
-def test_a_torus_that_is_not_there_is_an_honest_failure(capsys, solved, tmp_path):
-    output = tmp_path / "none.symfpu"
-    assert "no torus of the seeds (1, 3)" in refusal(capsys, "refine", solved, "--energy", "1e9", "-o", str(output), code=1)
-    assert not output.exists()
-
-
 def test_a_refined_torus_is_exported(capsys, solved, tmp_path):
     torus = refine(load(solved).torus)
     refined = save(tmp_path / "refined.symfpu", torus)

@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, integrate, load, prove_existence, save, sweep
+from symfpu import Chain, breather_at_amplitude, integrate, load, prove_existence, prove_propagation, save, sweep
 from tests.cli.running import answer, refusal, shown
 from tests.tolerances import COARSE_STEP_ERROR, NEWTON_RESIDUAL
 from tests.tori.solutions import CASES
@@ -27,6 +27,8 @@ def files(tmp_path_factory):
     (folder / "text").write_text("Q = 1")
     os.mkfifo(folder / "pipe")  # nobody writes it: opening it would wait for ever
     (folder / "other").write_text(json.dumps({"x": 1}))
+    prove_propagation(6, (2, 3), 2, model="beta").write(folder / "altered")
+    (folder / "altered").write_text((folder / "altered").read_text().replace('"residue": ', '"residue": 1', 1))
     return folder
 
 
@@ -64,6 +66,7 @@ OF_A_CERTIFICATE = {
     "other": "it names no format",
     "none": "No such file",
     "pipe": "pipe': allowed is a regular file",
+    "altered": "the digest is not",
 }
 
 

@@ -10,7 +10,7 @@ from symfpu import NoRecurrence, SymfpuError, alignment_indices, fpu_trajectory,
 from symfpu.paper import dimensions, fig2, fig3, targets
 from symfpu.paper.claims import VERDICTS, PaperFigure
 from symfpu.paper.starts import printed_row
-from tests.cli.running import run, shown, strict
+from tests.cli.running import refusal, run, shown, strict
 from tests.paper.cases import shorter_figure_9
 
 LONG = 1e3  # in place of 1e9
@@ -59,12 +59,18 @@ def cells(page, header):
     return [line.split("|") for i in starts for line in lines[i : i + 3]]
 
 
-@pytest.mark.long
-def test_a_target_that_fails_costs_no_other(alone, monkeypatch, capsys, tmp_path):
-    def lost(folder, progress, *, full=False):
+@pytest.fixture
+def lost(monkeypatch):
+    """No figure 3."""
+
+    def failing(folder, progress, *, full=False):
         raise NoRecurrence(1e4, 0.9)
 
-    monkeypatch.setitem(targets.TARGETS, "fig3", lost)
+    monkeypatch.setitem(targets.TARGETS, "fig3", failing)
+
+
+@pytest.mark.long
+def test_a_target_that_fails_costs_no_other(alone, lost, capsys, tmp_path):
     code, out, err = run(capsys, "reproduce", "fig3", "section5", "fig6", "-o", str(tmp_path))
     assert code == 1
     assert "no figures of fig3 (NoRecurrence: no recurrence" in err.splitlines()[-1]
@@ -73,14 +79,8 @@ def test_a_target_that_fails_costs_no_other(alone, monkeypatch, capsys, tmp_path
     assert list(strict((tmp_path / "report.json").read_text())["figures"]) == ["section5", "fig6"]
 
 
-def test_one_target_alone_fails_with_its_own_error(monkeypatch, capsys, tmp_path):
-    def lost(folder, progress, *, full=False):
-        raise NoRecurrence(1e4, 0.9)
-
-    monkeypatch.setitem(targets.TARGETS, "fig3", lost)
-    code, out, err = run(capsys, "reproduce", "fig3", "-o", str(tmp_path), "--json")
-    assert (code, out) == (1, "")
-    assert err.startswith("symfpu: no recurrence")
+def test_one_target_alone_fails_with_its_own_error(lost, capsys, tmp_path):
+    assert "no recurrence" in refusal(capsys, "reproduce", "fig3", "-o", str(tmp_path), "--json", code=1)
     assert not list(tmp_path.iterdir())
 
 

@@ -79,16 +79,16 @@ class Clock:
 
 
 @pytest.fixture
-def lines(monkeypatch):
-    """Lines by hand: a clock, and no thread that looks on."""
+def clock(monkeypatch):
+    """Time by hand, for lines without a thread that looks on."""
     clock = Clock()
     monkeypatch.setattr(terminal, "monotonic", clock)
     monkeypatch.setattr(terminal, "PATIENCE", 2.0)
-    return clock, Lines("series")
+    return clock
 
 
-def test_lines_have_patience_and_pauses(lines, capsys):
-    clock, tell = lines
+def test_lines_have_patience_and_pauses(clock, capsys):
+    tell = Lines("series")
     for now, done in ((0.5, 0.1), (1.5, 0.3), (2.5, 0.5), (3.0, 0.6), (3.4, 0.7), (3.6, 0.75)):
         clock.now = now
         tell("series", done)
@@ -98,8 +98,8 @@ def test_lines_have_patience_and_pauses(lines, capsys):
     ]
 
 
-def test_pauses_grow_and_silence_ends(lines, capsys):
-    clock, tell = lines
+def test_pauses_grow_and_silence_ends(clock, capsys):
+    tell = Lines("series")
     clock.now = 1000.0
     tell("verdict", math.nan)
     for clock.now in (1005.0, 1009.0):
@@ -115,10 +115,7 @@ def test_pauses_grow_and_silence_ends(lines, capsys):
     ]
 
 
-def test_a_step_whose_numbers_change_waits_longer_than_another(monkeypatch, capsys):
-    clock = Clock()
-    monkeypatch.setattr(terminal, "monotonic", clock)
-    monkeypatch.setattr(terminal, "PATIENCE", 2.0)
+def test_a_step_whose_numbers_change_waits_longer_than_another(clock, capsys):
     tell = Lines("first", again=5.0)
     clock.now = 2.5
     tell("fig2: GALI, t = 1e+03 of 1e+07 (1%)", 0.1)
