@@ -14,7 +14,6 @@ from tests.plots.pictures import PICTURES, THREE
 
 QUICK = ("multipliers-unstable", "residuals", "section-breather")
 EACH = [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.long]) for name in PICTURES]
-NAMELESS = ("toda-gaps-orbit",)  # an array of gaps does not know its chain
 
 
 @cache
@@ -43,14 +42,7 @@ def test_a_legend_covers_no_point_and_no_word(name, size):
     assert not any(text.get_window_extent().overlaps(box) for text in ax.texts)
 
 
-# of what a picture is
-
-
-@pytest.mark.parametrize("name", [case for case in EACH if case.values[0] not in NAMELESS])
-def test_a_picture_says_of_which_chain_it_is(name):
-    said = drawn(name).figure.get_suptitle()
-    assert said.startswith(("N=", "beta="))
-    assert "\n" not in said
+# of what a picture is; that every picture says it: tests/plots/test_pictures.py
 
 
 def test_the_subject_has_chain_seeds_and_energy():

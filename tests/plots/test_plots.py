@@ -243,31 +243,17 @@ def test_an_animation_moves_and_is_written(tmp_path, ax):
 # tori
 
 
-def test_a_section_is_taken_once_a_period(ax):
-    plots.section(cases.torus(), ax, modes=(3,), seed=2, points=5)
+@pytest.mark.parametrize(("result", "mode", "seed"), [(cases.torus, 3, 2), (cases.ring, -2, 1)])
+def test_a_section_is_taken_once_a_period(result, mode, seed, ax):
+    """Of a ring, the real parts."""
+    found = result()
+    plots.section(found, ax, modes=(mode,), seed=seed, points=5)
     (line,) = ax.get_lines()
-    times = 2 * np.pi / 0.39046 * np.arange(5)
-    assert line.get_xdata() == pytest.approx(cases.torus().Q(times)[:, 2], rel=LAST_DIGIT)
-    assert line.get_ydata() == pytest.approx(cases.torus().P(times)[:, 2], rel=LAST_DIGIT)
-
-
-def test_a_section_of_a_ring_has_real_parts(ax):
-    ring = cases.ring()
-    plots.section(ring, ax, modes=(-2,), points=3)
-    times = 2 * np.pi / float(ring.frequencies[0]) * np.arange(3)
-    column = ring.chain.mode_numbers.index(-2)
-    (line,) = ax.lines
-    assert line.get_xdata() == pytest.approx(ring.Q(times)[:, column].real, rel=LAST_DIGIT)
-    assert line.get_ydata() == pytest.approx(ring.P(times)[:, column].real, rel=LAST_DIGIT)
-    assert "Re" in ax.get_xlabel()
-
-
-def test_small_divisors_of_a_ring_are_those_of_its_series(ax):
-    series = symfpu.lindstedt(cases.RING, (1,), ("0.69",), 6)
-    plots.small_divisors(series, ax)
-    assert ax.lines[0].get_xdata().tolist() == [d.size for d in series.smallest_divisors]
-    plots.small_divisors(symfpu.solve_amplitudes(series), ax)
-    assert ax.lines[-1].get_xdata().tolist() == [d.size for d in series.smallest_divisors]
+    times = 2 * np.pi / float(found.frequencies[found.seeds.index(seed)]) * np.arange(5)
+    column = found.chain.mode_numbers.index(mode)
+    assert line.get_xdata() == pytest.approx(found.Q(times)[:, column].real, rel=LAST_DIGIT)
+    assert line.get_ydata() == pytest.approx(found.P(times)[:, column].real, rel=LAST_DIGIT)
+    assert ("Re" in ax.get_xlabel()) == found.chain.periodic
 
 
 def test_faces_of_a_torus_have_as_many_corners(ax3, monkeypatch):
@@ -304,12 +290,26 @@ def test_colours_are_the_largest_coefficients(ax):
             assert np.isnan(table[length, 5])
 
 
-def test_small_divisors_are_those_of_the_series_or_of_newtons_method(ax):
-    plots.small_divisors(cases.torus(), ax)
-    assert list(ax.get_lines()[0].get_xdata()) == [d.size for d in cases.series().smallest_divisors]
-    other = Figure().add_subplot()
-    plots.small_divisors(cases.refined(), other)
-    assert list(other.get_lines()[0].get_xdata()) == [abs(r.divisor) for r in cases.refined().origin.near_resonances]
+def near_resonances():
+    return [abs(r.divisor) for r in cases.refined().origin.near_resonances]
+
+
+def divisors(series):
+    return [d.size for d in series.smallest_divisors]
+
+
+@pytest.mark.parametrize(
+    ("result", "expected"),
+    [
+        (cases.torus, lambda: divisors(cases.series())),
+        (cases.refined, near_resonances),
+        (cases.ring, lambda: divisors(cases.ring().origin.series)),
+        (lambda: cases.ring().origin.series, lambda: divisors(cases.ring().origin.series)),
+    ],
+)
+def test_small_divisors_are_those_of_the_series_or_of_newtons_method(result, expected, ax):
+    plots.small_divisors(result(), ax)
+    assert ax.get_lines()[0].get_xdata().tolist() == expected()
 
 
 def test_amplitudes_are_differences_by_order(ax):
