@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import symfpu
+from tests.system import raising
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "docs"))
@@ -123,10 +124,7 @@ def test_lost_links_are_found(link, leads, tmp_path):
 
 
 def test_links_without_a_network_say_so_in_one_line(monkeypatch, capsys, tmp_path):
-    def unreachable(*_):
-        raise OSError
-
-    monkeypatch.setattr(check.socket, "create_connection", unreachable)
+    monkeypatch.setattr(check.socket, "create_connection", raising(OSError()))
     (tmp_path / "a.md").write_text("[a](https://example.org/page) [b](http://example.com)")
     assert check.silent_hosts(tmp_path.glob("*.md")) == ["example.com", "example.org"]
     assert make_site.ask(tmp_path) == 1

@@ -21,6 +21,7 @@ from symfpu.algebra.grading import Grading
 from symfpu.bundles.bundle import load, save
 from symfpu.proofs.certificates import random_point
 from symfpu.series.residues import residue_series
+from tests.system import of_system, raising
 
 ALPHA, BETA, BOTH = Chain(8, alpha="0.3"), Chain(8, beta="-0.1"), Chain(8, alpha="1/3", beta="0.7")
 PHASES = {1: 0.4, 2: -1.3}
@@ -184,19 +185,12 @@ def opened(path):
     return members, json.loads(members["bundle.json"])
 
 
-def fail(error):
-    def raising(*args, **kwargs):
-        raise error
-
-    return raising
-
-
-@pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()])
+@pytest.mark.parametrize("error", [of_system(errno.ENOSPC), KeyboardInterrupt()])
 @pytest.mark.parametrize("step", ["os.replace", "os.fsync", "zipfile._ZipWriteFile.write"])
 def test_a_failed_write_leaves_the_old_file(step, error, healthy, tmp_path, monkeypatch):
     path = tmp_path / "kept"
     path.write_bytes(healthy[1])
-    monkeypatch.setattr(step, fail(error))
+    monkeypatch.setattr(step, raising(error))
     with pytest.raises(InputError if isinstance(error, OSError) else KeyboardInterrupt, match=r"No space left|^$"):
         save(path, healthy[0].torus)
     assert os.listdir(tmp_path) == ["kept"]

@@ -20,6 +20,7 @@ from symfpu import save as save_any
 from symfpu.bundles.bundle import load, save
 from symfpu.files.archive import Archive
 from tests.bundles.test_bundle import ALPHA, digest, healthy, opened, same  # noqa: F401 (a fixture)
+from tests.system import raising
 
 
 def refused(path, data):
@@ -101,12 +102,9 @@ def test_a_result_without_series_and_solution_is_not_called_damaged(tmp_path):
 
 
 def test_a_lack_of_memory_is_no_damage(healthy, tmp_path, monkeypatch):
-    def none_left(*_):
-        raise MemoryError
-
     path = tmp_path / "file"
     path.write_bytes(healthy[1])
-    monkeypatch.setattr(Archive, "array", none_left)
+    monkeypatch.setattr(Archive, "array", raising(MemoryError()))
     with pytest.raises(BundleError, match="needs more memory than is free; close other programs"):
         load(path)
 

@@ -1,5 +1,6 @@
 """How the command line ends: the interrupt key at any moment, standard output that is closed or full."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -10,6 +11,7 @@ from shlex import split
 import pytest
 
 from symfpu.cli.main import main
+from tests.system import of_system, raising
 
 VERB = split("propagate -N 8 --seeds 1 --order 2")
 SOLVE = split("solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 30")
@@ -140,9 +142,6 @@ def test_a_reader_that_has_heard_enough_ends_the_command_in_silence(many, capsys
 
 
 def test_an_error_of_the_system_without_a_name_is_told(capsys, monkeypatch):
-    def refused(*given, **options):
-        raise OSError(5, "Input/output error")
-
-    monkeypatch.setattr("symfpu.cli.proofs.excitation_sequence", refused)
+    monkeypatch.setattr("symfpu.cli.proofs.excitation_sequence", raising(of_system(errno.EIO)))
     assert main(VERB) == 2
     assert capsys.readouterr().err == "symfpu: the system refuses: Input/output error\n"

@@ -1,12 +1,11 @@
 """The command line's exact verbs: prove, verify, sweep, reproduce fig6."""
 
-import os
-import threading
 from shlex import split
 
 import pytest
 
 from tests.cli.running import answer, run, shown
+from tests.system import read_from
 
 
 def test_prove_writes_a_certificate_that_verify_accepts(capsys, tmp_path):
@@ -38,15 +37,12 @@ def test_sweep_prints_exceptions_and_writes_its_summary(capsys, tmp_path):
 
 def test_a_certificate_goes_through_a_link_and_into_a_pipe(capsys, tmp_path):
     prove = split("prove -N 6 --seeds 1,2 --order 2 -o")
-    link, pipe, heard = tmp_path / "link", tmp_path / "pipe", tmp_path / "heard"
+    link, pipe = tmp_path / "link", tmp_path / "pipe"
     link.symlink_to(tmp_path / "certificate")
-    os.mkfifo(pipe)
     assert run(capsys, *prove, str(link))[0] == 0
     assert link.is_symlink()
-    reader = threading.Thread(target=lambda: heard.write_bytes(pipe.read_bytes()))
-    reader.start()
-    assert run(capsys, *prove, str(pipe))[0] == 0
-    reader.join()
+    with read_from(pipe) as heard:
+        assert run(capsys, *prove, str(pipe))[0] == 0
     assert pipe.is_fifo()
-    assert heard.read_bytes() == (tmp_path / "certificate").read_bytes()
+    assert heard == [(tmp_path / "certificate").read_bytes()]
     assert run(capsys, "verify", str(link))[0] == 0

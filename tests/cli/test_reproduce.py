@@ -12,6 +12,7 @@ from symfpu.paper.claims import VERDICTS, PaperFigure
 from symfpu.paper.starts import printed_row
 from tests.cli.running import refusal, run, shown, strict
 from tests.paper.cases import shorter_figure_9
+from tests.system import raising
 
 LONG = 1e3  # in place of 1e9
 RUNS = {"every": 0.0}  # a checkpoint at every look
@@ -62,11 +63,7 @@ def cells(page, header):
 @pytest.fixture
 def lost(monkeypatch):
     """No figure 3."""
-
-    def failing(folder, progress, *, full=False):
-        raise NoRecurrence(1e4, 0.9)
-
-    monkeypatch.setitem(targets.TARGETS, "fig3", failing)
+    monkeypatch.setitem(targets.TARGETS, "fig3", raising(NoRecurrence(1e4, 0.9)))
 
 
 @pytest.mark.long

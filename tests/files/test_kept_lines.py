@@ -2,13 +2,13 @@
 
 import os
 import random
-import resource
 
 import pytest
 
 from symfpu import FileFull, InputError
 from symfpu.files.kept_lines import KeptLines, entry_of
 from symfpu.files.sealed import document_in, read_bytes, write_sealed
+from tests.system import files_up_to
 
 
 class Numbers(KeptLines):
@@ -70,15 +70,10 @@ def test_one_writes_at_a_time(tmp_path):
 
 
 def test_entries_that_find_no_room_are_left_out_together(tmp_path):
-    """The limit of the size of a file, which the system tells as it tells a full disk."""
-    path, usual = tmp_path / "numbers.jsonl", resource.getrlimit(resource.RLIMIT_FSIZE)
+    path = tmp_path / "numbers.jsonl"
     added_to(path, {"n": 1})
-    resource.setrlimit(resource.RLIMIT_FSIZE, (path.stat().st_size + 20, usual[1]))
-    try:
-        with pytest.raises(FileFull, match="make room there") as caught:
-            added_to(path, *[{"n": n} for n in range(9)])
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+    with files_up_to(path.stat().st_size + 20), pytest.raises(FileFull, match="make room there") as caught:
+        added_to(path, *[{"n": n} for n in range(9)])
     assert caught.value.rows == 1
     assert kept_in(path) == [1]
 

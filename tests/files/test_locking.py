@@ -10,6 +10,7 @@ import pytest
 from symfpu import InputError
 from symfpu.files import locking
 from symfpu.files.locking import one_run
+from tests.system import of_system, raising
 
 WAITS = """
 import sys, time
@@ -85,19 +86,13 @@ def test_a_lock_that_was_removed_before_it_was_had_is_made_again(tmp_path, monke
 
 
 def test_a_file_system_without_locks_is_told(tmp_path, monkeypatch):
-    def none(stream):
-        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
-
-    monkeypatch.setattr(locking, "lock", none)
+    monkeypatch.setattr(locking, "lock", raising(of_system(errno.ENOLCK)))
     with pytest.warns(RuntimeWarning, match="no locks.*one process"), one_run(tmp_path / "run"):
         pass
 
 
 def test_a_place_without_room_is_refused_by_name(tmp_path, monkeypatch):
-    def full(file):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(locking, "_taken", full)
+    monkeypatch.setattr(locking, "_taken", raising(of_system(errno.ENOSPC)))
     with pytest.raises(InputError, match=r"run'.*No space left on device"), one_run(tmp_path / "run"):
         pass
 

@@ -10,7 +10,6 @@ import socket
 import stat
 import subprocess
 import sys
-import threading
 
 import numpy as np
 import pytest
@@ -20,6 +19,7 @@ from symfpu.files import writing
 from symfpu.files.archive import SCHEMA, Archive, write_document
 from symfpu.files.formats import BUNDLE
 from symfpu.files.writing import open_to_read, output_file, output_folder, regular_file, write_bytes, write_file, write_rows, write_text
+from tests.system import of_system, raising, read_from
 
 
 def drafts(folder):
@@ -79,16 +79,13 @@ def test_a_file_that_fails_stays_as_it_was(tmp_path, monkeypatch):
     path = tmp_path / "file"
     path.write_text("before")
 
-    def full(descriptor):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
     def interrupted(stream):
         stream.write(b"half")
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         write_file(path, interrupted)
-    monkeypatch.setattr(os, "fsync", full)
+    monkeypatch.setattr(os, "fsync", raising(of_system(errno.ENOSPC)))
     with pytest.raises(InputError, match=r"file'.*No space left on device") as caught:
         write_text(path, "after")
     assert caught.value.value == str(path)
@@ -98,13 +95,9 @@ def test_a_file_that_fails_stays_as_it_was(tmp_path, monkeypatch):
 
 def test_a_pipe_is_written_to_and_stays_a_pipe(tmp_path):
     pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    heard = []
-    reader = threading.Thread(target=lambda: heard.append(pipe.read_bytes()))
-    reader.start()
-    assert output_file(pipe) == pipe
-    write_bytes(pipe, b"content")
-    reader.join()
+    with read_from(pipe) as heard:
+        assert output_file(pipe) == pipe
+        write_bytes(pipe, b"content")
     assert heard == [b"content"]
     assert stat.S_ISFIFO(pipe.stat().st_mode)
     assert drafts(tmp_path) == []
@@ -132,12 +125,10 @@ def test_a_device_is_written_to_and_stays_a_device(tmp_path):
 def test_an_archive_goes_through_a_pipe(tmp_path):
     """A stream that does not go back: what comes out is the file."""
     body, values = {"format": BUNDLE, "schema": SCHEMA}, np.arange(1000.0)
-    pipe, copy = tmp_path / "pipe", tmp_path / "copy"
-    os.mkfifo(pipe)
-    reader = threading.Thread(target=lambda: copy.write_bytes(pipe.read_bytes()))
-    reader.start()
-    write_document(pipe, body, {"values": values})
-    reader.join()
+    copy = tmp_path / "copy"
+    with read_from(tmp_path / "pipe") as heard:
+        write_document(tmp_path / "pipe", body, {"values": values})
+    copy.write_bytes(*heard)
     with copy.open("rb") as stream:
         assert (Archive(copy, stream).array("values", "<f8", 1000) == values).all()
 

@@ -12,6 +12,7 @@ from symfpu.proofs.reading import CertificateError, Kind, check_kind, dyadic, fr
 from symfpu.proofs.rounding import scientific, up
 from tests import results
 from tests.proofs.certificate_files import moved, reason, sealed
+from tests.system import raising
 
 KIND = Kind("some certificate", 3, {"format", "schema", "value", "digest"})
 GOOD = sealed({"format": "some certificate", "schema": 3, "value": [1, -2, "1/2"]})
@@ -83,11 +84,8 @@ def test_a_bound_is_a_positive_dyadic_number(pair):
 
 @pytest.mark.parametrize("error", [OSError, KeyError, TypeError, AttributeError, RecursionError, ZeroDivisionError, OverflowError])
 def test_what_breaks_the_reading_refuses_the_certificate(error, tmp_path):
-    def broken(path):
-        raise error("reason")
-
     with pytest.raises(CertificateError, match=r"no readable certificate.*reason"):
-        verified(tmp_path, broken, list)
+        verified(tmp_path, raising(error("reason")), list)
 
 
 def test_a_reason_stays_as_it_is(tmp_path):

@@ -2,7 +2,6 @@
 
 import json
 import os
-import resource
 import threading
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from fractions import Fraction
@@ -15,6 +14,7 @@ from symfpu.files.kept_lines import entry_of, line_of
 from symfpu.sweeps.rows_file import RowsFile, head_of
 from symfpu.sweeps.this_process import ThisProcess
 from tests.sweeps.functions import coupling_of, deadly_square, lists, rows_so_far, slow_square, square, strange
+from tests.system import files_up_to
 
 TEN = [{"n": n} for n in range(10)]
 
@@ -232,14 +232,9 @@ def test_one_process_at_a_time_writes(tmp_path, threads):
 
 
 def test_a_full_disk_costs_no_row_that_is_written(tmp_path, threads):
-    """The limit of the size of a file, which the system tells as it tells a full disk."""
-    file, usual = tmp_path / "rows.jsonl", resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (600, usual[1]))
-    try:
-        with pytest.raises(FileFull, match="make room there") as caught:
-            sweep(square, [{"n": n} for n in range(100)], executor=threads, file=file)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+    file = tmp_path / "rows.jsonl"
+    with files_up_to(600), pytest.raises(FileFull, match="make room there") as caught:
+        sweep(square, [{"n": n} for n in range(100)], executor=threads, file=file)
     kept = read_sweep(file).rows
     assert len(kept) == caught.value.rows > 2
     assert file.read_bytes().endswith(b"}\n")
