@@ -25,6 +25,9 @@ def backend():
         return False
 
 
+BUILDS = pytest.mark.skipif(not backend(), reason=f"setuptools {NEEDED} or later is not installed: pip install '.[dev]'")
+
+
 @pytest.fixture
 def tracked():
     if not (ROOT / ".git").exists():
@@ -33,16 +36,21 @@ def tracked():
     return [name for name in listed.stdout.split("\0") if name and (ROOT / name).exists()]
 
 
-@pytest.mark.long
-@pytest.mark.skipif(not backend(), reason=f"setuptools {NEEDED} or later is not installed: pip install '.[dev]'")
-def test_every_tracked_file_is_in_the_sdist(tracked, tmp_path):
-    copy, built = tmp_path / "copy", tmp_path / "built"
-    built.mkdir()
+@pytest.fixture
+def copy(tracked, tmp_path):
+    """The tracked files alone, in another folder."""
+    folder = tmp_path / "copy"
     for name in tracked:
-        (copy / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, copy / name)
-    subprocess.run([sys.executable, "-c", BUILD, str(built)], cwd=copy, capture_output=True, check=True)
-    (archive,) = built.glob("*.tar.gz")
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, folder / name)
+    return folder
+
+
+@pytest.mark.long
+@BUILDS
+def test_every_tracked_file_is_in_the_sdist(copy, tracked, tmp_path):
+    subprocess.run([sys.executable, "-c", BUILD, str(tmp_path)], cwd=copy, capture_output=True, check=True)
+    (archive,) = tmp_path.glob("*.tar.gz")
     with tarfile.open(archive) as contents:
         inside = {member.name.partition("/")[2] for member in contents.getmembers() if member.isfile()}
     assert set(tracked) <= inside
@@ -71,13 +79,9 @@ def run(command, folder):
 
 
 @pytest.mark.long
-@pytest.mark.skipif(not backend(), reason=f"setuptools {NEEDED} or later is not installed: pip install '.[dev]'")
+@BUILDS
 @pytest.mark.skipif(sys.platform == "win32", reason="folders of environments have other names there")
-def test_a_wheel_works_in_an_empty_environment(tracked, tmp_path):
-    copy = tmp_path / "copy"
-    for name in tracked:
-        (copy / name).parent.mkdir(parents=True, exist_ok=True)
-        (copy / name).write_bytes((ROOT / name).read_bytes())
+def test_a_wheel_works_in_an_empty_environment(copy, tracked, tmp_path):
     run([sys.executable, "-c", WHEEL, tmp_path], copy)
     (wheel,) = tmp_path.glob("*.whl")
     inside = set(zipfile.ZipFile(wheel).namelist())

@@ -86,17 +86,6 @@ def test_divisors_of_high_modes_are_their_limits(m, seeds, nu):
         assert np.log2(errors[0] / errors[1]) > 3 - SLOPE
 
 
-@pytest.mark.long
-def test_a_breather_at_the_upper_end():
-    """Against an orbit found by harmonic balance."""
-    orbit = breather_at_amplitude(Chain(32, beta="0.3"), 31, 0.01)
-    spectrum = orbit.average_spectrum()
-    for q in (3, 5):
-        formula = asymptotic_energy(Chain("N", beta="0.3"), ("N-1",), f"N-{q}", terms=4)
-        numbers = {"N": 32, energy_symbol(mode_label("N-1", "q")): float(spectrum[-1])}
-        assert float(formula.subs(numbers)) == pytest.approx(spectrum[-q], rel=SMALL_BREATHER)
-
-
 def test_far_modes_are_found():
     """1 = 3 * 5 - 2 * 7: the rule reaches it at order 4."""
     assert asymptotic_energy(ALPHA, (5, 7), 1, terms=1).free_symbols == {N, se.Symbol("E5"), se.Symbol("E7")}
@@ -138,15 +127,6 @@ def test_error_of_a_term_falls_with_the_next_power(chain, seeds, q, order):
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2 if both_ends else 4, abs=SLOPE)
 
 
-@pytest.mark.long
-def test_a_term_by_sympy():
-    series = lindstedt(ALPHA, (1,), order=1)
-    exact = closed_form(series.term(2, 1), ALPHA, (1,), frequencies="linear")
-    for terms in (1, 2):
-        difference = asymptotic_term(series, 2, 1, terms=terms) - by_sympy(exact, terms)
-        assert se.expand(difference) == 0
-
-
 @pytest.mark.parametrize("q", range(1, 9))
 def test_law_of_q_breathers_is_exact_in_long_chains(q):
     """Eq. brelaw: E_q = gamma^(q-1) q^2 E_1; the next term multiplies it with 1 - (5/24) (q-1)^2 (pi/N)^2. Ours."""
@@ -174,13 +154,22 @@ def test_law_of_q_breathers_of_beta(k):
     assert se.expand(asymptotic_energy(BETA, (1,), 2 * k + 1, terms=1) - leading) == 0
 
 
-def test_energies_are_those_of_breathers():
-    """A breather found by harmonic balance; what is left is the next power of the amplitude and of 1/N^2."""
-    orbit = breather_at_amplitude(Chain(32, alpha="0.33"), 1, 0.01)
-    spectrum = orbit.average_spectrum()
-    for q in (2, 3, 4):
-        formula = asymptotic_energy(Chain("N", alpha="0.33"), (1,), q)
-        assert float(formula.subs({"N": 32, "E1": float(spectrum[0])})) == pytest.approx(spectrum[q - 1], rel=SMALL_BREATHER)
+BREATHERS = [
+    ("alpha", "0.33", 1, (2, 3, 4), 2),
+    pytest.param("beta", "0.3", "N-1", ("N-3", "N-5"), 4, marks=pytest.mark.long),
+]
+
+
+@pytest.mark.parametrize(("model", "strength", "seed", "modes", "terms"), BREATHERS)
+def test_energies_are_those_of_breathers(model, strength, seed, modes, terms):
+    """Found by harmonic balance; what is left is the next power of the amplitude and of 1/N^2."""
+    law, place = {model: strength}, mode_of(mode_label(seed, "q"), 32)
+    spectrum = breather_at_amplitude(Chain(32, **law), place, 0.01).average_spectrum()
+    numbers = {"N": 32, energy_symbol(mode_label(seed, "q")): float(spectrum[place - 1])}
+    for q in modes:
+        formula = asymptotic_energy(Chain("N", **law), (seed,), q, terms=terms)
+        found = spectrum[mode_of(mode_label(q, "q"), 32) - 1]
+        assert float(formula.subs(numbers)) == pytest.approx(found, rel=SMALL_BREATHER)
 
 
 def energy_in_numbers(series, q, order, length):

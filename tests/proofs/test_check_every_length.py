@@ -130,9 +130,3 @@ def test_residues_are_refused_when_altered(tmp_path):
         check(evidence[i]._replace(witnesses={}), data["points"])
     with pytest.raises(CertificateError, match="nothing asks"):
         check(evidence[i]._replace(witnesses=evidence[i].witnesses | {(1, 1): (point, residue, powers)}), data["points"])
-
-
-def test_orders_beyond_it_and_digests_of_others_are_refused(tmp_path):
-    data = prove_for_all_N("alpha", 1, 1).certificate()
-    assert "beyond this checker" in refused(tmp_path, data | {"order": 201})
-    assert "digest" in reason(verify, data | {"order": 2}, tmp_path)

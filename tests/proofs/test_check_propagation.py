@@ -13,6 +13,7 @@ import pytest
 from symfpu.proofs.check_propagation import MODELS, SYMBOLS, Budget, Case, Point, Recursion, couplings, verify
 from symfpu.proofs.check_propagation.couplings import coupling_steps
 from symfpu.proofs.reading import CertificateError
+from tests.chain.test_propagation import LENGTH, folded, literal_modes
 from tests.proofs.certificate_files import parts_of, replaced, sealed
 
 
@@ -109,19 +110,13 @@ def point(N, seeds, start=2**20):
     return {"prime": p, "root": g, "frequencies": [(12345 + 67891 * q * q) % p for q in seeds]}
 
 
-def folded(total, N):
-    """|2 [(|total| + N - 1) / 2N] N - |total||, as printed in Eq. app."""
-    return abs(2 * ((abs(total) + N - 1) // (2 * N)) * N - abs(total))
-
-
 def rule(N, model, seeds, order):
     """D_0 .. D_order by Eqs. app, dk, over all vectors of signed seeds."""
-    sequence, seen = [], {0, N}
+    sequence, seen = [], set()
     for k in range(order + 1):
-        r = k + 1 if model == "alpha" else 2 * k + 1
-        M = {folded(sum(signed), N) for signed in product([*seeds, *(-q for q in seeds)], repeat=r)}
-        sequence.append(sorted(M - seen))
-        seen |= M
+        M = literal_modes(N, seeds, LENGTH[model](k))
+        sequence.append([q for q in M if q not in seen])
+        seen.update(M)
     return sequence
 
 
