@@ -45,15 +45,6 @@ def places_of(value):
     return [place for place, part in parts_of(value) if not isinstance(part, dict | list)]
 
 
-def check_every_number(verify, data, folder, least):
-    """Right as it is, and refused with any number or text altered, of which there are more than these."""
-    assert reason(verify, data, folder) is None
-    places = places_of(data)
-    assert len(places) > least
-    for place in places:
-        assert reason(verify, altered(data, place, moved), folder), place
-
-
 def altered(data, place, change):
     """A copy with what stands at a place changed by a function."""
     other = copy.deepcopy(data)

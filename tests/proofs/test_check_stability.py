@@ -11,7 +11,7 @@ from symfpu import Chain, breather_at_amplitude, prove_stability
 from symfpu.proofs.check_stability import verify
 from symfpu.proofs.check_stability.bounds import INVERSE_BITS, inverse_of
 from symfpu.proofs.check_stability.slopes import ONE, PLACES
-from tests.proofs.certificate_files import altered, check_every_number, check_refused, reason, sealed
+from tests.proofs.certificate_files import altered, check_refused, reason, sealed
 from tests.tolerances import INVERSE_OF_BLOCK
 
 CASES = {
@@ -30,11 +30,6 @@ def certificate(name):
 def sealed_inside(data):
     """With the digest of the proof of existence made to fit, too."""
     return sealed(data | {"existence": sealed(data["existence"])})
-
-
-@pytest.mark.parametrize("name", [*CASES, "of its amplitude"])
-def test_every_number_altered_is_refused(name, tmp_path):
-    check_every_number(verify, certificate(name), tmp_path, 100)
 
 
 FIRST = ("exponents", 0)

@@ -4,7 +4,6 @@ import ast
 import copy
 import json
 import random
-import re
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -18,7 +17,7 @@ from symfpu.proofs.check_torus.budget import STEPS_A_BYTE, Budget
 from symfpu.proofs.check_torus.claim import read_claim
 from symfpu.proofs.check_torus.residual import residuals
 from symfpu.proofs.check_torus.series import by_pairs
-from symfpu.proofs.reading import READING_ERRORS, CertificateError
+from symfpu.proofs.reading import CertificateError
 from tests.proofs.certificate_files import altered, check_refused, sealed
 from tests.results import two_angles
 
@@ -46,19 +45,6 @@ def test_both_kinds_are_theorems(tmp_path):
     lines = checked(stay(), tmp_path)
     assert lines[1] == of_energy
     assert "every orbit that starts on this torus stays, for 1.00e3 units of time" in lines[2]
-
-
-@pytest.mark.parametrize("make", [residual, stay])
-def test_no_altered_number_passes(make, tmp_path):
-    """Every number of the file, one digit changed: the digest binds all of them."""
-    text = json.dumps(make(), separators=(",", ":"))
-    path = tmp_path / "certificate.json"
-    numbers = list(re.finditer(r"[0-9]+", text))
-    for found in random.Random(5).sample(numbers, 150):
-        digit = str((int(text[found.start()]) + 1) % 10)
-        path.write_text(text[: found.start()] + digit + text[found.start() + 1 :])
-        with pytest.raises((CertificateError, *READING_ERRORS)):
-            check_torus.read_certificate(path)
 
 
 def halved(pair):
