@@ -270,10 +270,8 @@ def orbit_near(
             break
         harmonics *= 2
         if harmonics * (chain.N - 1) > 2 * LARGEST_SYSTEM:
-            still = (
-                f"the last of {harmonics // 2} harmonics is still {heights[-2:].max():.1g}"
-            )
-            raise NoPeriodicOrbit(balance, f"{still} of the largest", z)
+            reason = f"{harmonics // 2} harmonics do not resolve it"
+            raise NoPeriodicOrbit(balance, reason, z)
     largest = float(np.max(np.abs(cosines)))
     change = float(np.max(np.abs(z - balance.vector(guess, sigma)))) / largest
     if change > reach or abs(cosines[1, seed - 1]) < largest / GROWTH:

@@ -258,8 +258,8 @@ def more_harmonics(point: Point) -> int:
     N = balance.chain.N
     most = min(max(LEAST_MOST, PER_BOND * N), 2 * MOST_UNKNOWNS // (N - 1))
     if known >= most:
-        still = f"the last of {known} harmonics is still {heights[-2:].max():.1g}"
-        raise NotOnTheCurve(f"{still} of the largest", point, unresolved=True)
+        reason = f"{known} harmonics do not resolve it"
+        raise NotOnTheCurve(reason, point, unresolved=True)
     return min(harmonics, most)
 
 
