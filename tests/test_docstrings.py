@@ -79,6 +79,13 @@ def test_docstring_of_an_error_names_what_it_carries(name):
     assert _left_out(sorted(_set_attributes(PUBLIC[name])), PUBLIC[name].__doc__) == []
 
 
+@pytest.mark.parametrize("name", [*RESULTS, *sorted(ERRORS)])
+def test_every_method_has_a_docstring(name):
+    public = {called: member for called, member in vars(PUBLIC[name]).items() if not called.startswith("_")}
+    methods = {called: member for called, member in public.items() if inspect.isfunction(member) or isinstance(member, property)}
+    assert [called for called, member in methods.items() if not inspect.getdoc(member)] == []
+
+
 @pytest.mark.parametrize("name", [name for name in symfpu.__all__ if name != "plots"])
 def test_errors_and_results_that_docstrings_speak_of_exist(name):
     spoken = set(re.findall(r"\b[A-Z][a-z]+(?:[A-Z][a-z]+)+\b", PUBLIC[name].__doc__.split(">>>")[0]))

@@ -1,31 +1,20 @@
 """The table of doors in docs/chains.md: complete, and true of every chain."""
 
-import importlib.util
 import inspect
-from pathlib import Path
 
 import pytest
 
 import symfpu
 from symfpu.cli.verbs import VERBS
+from tests.scripts import DOCS, loaded
 
-ROOT = Path(__file__).parents[1]
-
-
-def _loaded(name):
-    spec = importlib.util.spec_from_file_location(name, ROOT / "docs" / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-doors = _loaded("make_doors")
+doors = loaded("make_doors")
 EVERY = {name: door for group in doors.DOORS.values() for name, door in group.items()}
 
 
 def rows():
     """The table on the page: by door the answers, by chain."""
-    section = (ROOT / "docs" / "chains.md").read_text().partition(doors.BEGIN)[2].partition(doors.END)[0]
+    section = (DOCS / "chains.md").read_text().partition(doors.BEGIN)[2].partition(doors.END)[0]
     cells = [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in section.splitlines() if line.startswith("|")]
     return {name: dict(zip(doors.CHAINS, answers, strict=True)) for name, *answers in cells if name in EVERY}
 

@@ -1,21 +1,10 @@
 """The index of equations: every label of the paper has a place, every citation a label, and the page is what its generator writes."""
 
-import importlib.util
-from pathlib import Path
-
 import pytest
 
-DOCS = Path(__file__).parents[1] / "docs"
+from tests.scripts import DOCS, loaded
 
-
-def _loaded(name):
-    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-index = _loaded("make_equations")
+index = loaded("make_equations")
 ITEMS = index.items()
 CITED = index.citations()
 

@@ -170,6 +170,7 @@ REFUSED = {
     "certify ORBIT --residual": "residual",
     "certify ORBIT --time 10": "time",
     # stability
+    "certify ORBIT --stability --half-width 1e-4": "half",
     "stability ORBIT --modes 1": "no seeds",
     "stability ORBIT --members 3": "members",
     "stability ORBIT -o folder": "o",
@@ -180,6 +181,7 @@ REFUSED = {
     "reproduce all nosuch": "nosuch",
     "reproduce fig3 --full": "fig1, fig2, fig9",
     "reproduce section5 fig6 --full": "leave out",
+    "workbench --port x": "port",
     # files; more of them in test_paths.py and test_other_files.py
     "show": "FILE",
     "show /": "Is a directory",

@@ -2,11 +2,9 @@
 
 import copy
 import json
-import os
 import re
 from itertools import product
 from math import gcd, isqrt
-from pathlib import Path
 
 import pytest
 
@@ -466,24 +464,6 @@ def test_other_files_are_refused_in_one_line(check, content):
 def test_the_message_names_an_unknown_schema_version_and_the_known_one(check, version):
     body = sealed(CERTIFICATES["refuted"] | {"schema": version, "news": []})
     refused(check, body, re.escape(f"schema version {version!r} is unknown: this checker supports versions 1, 2"))
-
-
-def test_missing_files_directories_and_devices_are_refused(tmp_path):
-    for path, reason in ((tmp_path / "none.json", "No such file"), (tmp_path, "regular file"), (Path(os.devnull), "regular file")):
-        with pytest.raises(CertificateError, match=reason):
-            verify(path)
-        with pytest.raises(CertificateError, match=reason):
-            verify(str(path))
-    with pytest.raises(CertificateError, match="null"):
-        verify("a\0b")
-
-
-def test_large_files_are_refused_before_they_are_read(tmp_path):
-    path = tmp_path / "large.json"
-    with path.open("wb") as file:
-        file.truncate(2**40)
-    with pytest.raises(CertificateError, match="64 MB"):
-        verify(path)
 
 
 @pytest.mark.parametrize(

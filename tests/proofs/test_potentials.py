@@ -201,8 +201,9 @@ def test_a_sweep_of_a_potential_goes_on_from_its_file_and_from_no_other(tmp_path
     with ThreadPoolExecutor(1) as pool:
         first = sweep_propagation((4, 5), 1, 2, potential="toda:1", executor=pool, file=file)
         longer = sweep_propagation((4, 5, 6), 2, 2, potential="toda:1", executor=pool, file=file)
-        with pytest.raises(InputError, match=r"^file = "):
-            sweep_propagation((4, 5), 1, 2, potential="toda:2", executor=pool, file=file)
+        for order, potential in ((2, "toda:2"), (3, "toda:1")):
+            with pytest.raises(InputError, match=r"^file = "):
+                sweep_propagation((4, 5), 1, order, potential=potential, executor=pool, file=file)
     assert (first.model, len(first.cases)) == ("toda:1", 7)
     assert set(first.cases) <= set(longer.cases)
     assert all(case.verdict == "proved" and case.corrected_rule_holds for case in longer.cases)

@@ -1,6 +1,5 @@
 """Sweeps: complete, resumable, on any executor."""
 
-import json
 import multiprocessing
 import os
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -59,19 +58,6 @@ def test_alpha_has_no_exception(threads):
     sweep = sweep_propagation(range(2, 9), 3, 5, executor=threads)
     assert sweep.exceptions == ()
     assert all(case.verdict == "proved" and case.corrected_rule_holds for case in sweep.cases)
-
-
-def test_a_sweep_goes_on_from_its_file(tmp_path, threads):
-    """As every sweep does (tests/sweeps/test_sweep.py)."""
-    file, told = tmp_path / "sweep.jsonl", []
-    given = {"model": "beta", "executor": threads, "file": file}
-    whole = sweep_propagation(range(2, 7), 2, 2, **given)
-    lines = file.read_text().splitlines(keepends=True)
-    assert len(lines) == 1 + len(whole.cases)
-    assert json.loads(lines[0])["fixed"] == {"potential": "polynomial:0,1", "order": 2}
-    file.write_text("".join(lines[:9]) + lines[9][:20])  # cut in the middle of a line
-    assert sweep_propagation(range(2, 7), 2, 2, **given, progress=lambda label, fraction: told.append(fraction)) == whole
-    assert told[0] > 8 / len(whole.cases)
 
 
 def test_summary_counts_what_the_sweep_holds(beta):

@@ -89,11 +89,6 @@ def test_forgeries_are_refused(case, file):
         load(forged(file, FORGERIES[case]))
 
 
-def test_a_newer_file_is_named(file):
-    with pytest.raises(BundleError, match="newer symfpu"):
-        load(forged(file, lambda members, body: body.update(schema=99)))
-
-
 @pytest.mark.parametrize("thing", [1, "torus", None, Chain(4, alpha=1), [result("Sweep")], result("Sweep").cases[0]])
 def test_what_is_no_result_is_refused(thing, tmp_path):
     with pytest.raises(InputError, match="a series, a solution or another result"):

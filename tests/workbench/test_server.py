@@ -73,8 +73,3 @@ def test_a_missing_panel_names_the_extra(monkeypatch, capsys):
         panel()
     assert main(["workbench"]) == 1
     assert "pip install 'symfpu[workbench]'" in capsys.readouterr().err
-
-
-def test_a_port_that_is_none_is_refused(capsys):
-    assert main(["workbench", "--port", "x"]) == 2
-    assert "port" in capsys.readouterr().err
