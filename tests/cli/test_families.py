@@ -173,14 +173,3 @@ def test_family_by_appendix_a(capsys):
     energies = [float(m["energy"]) for m in record["members"]]
     assert energies == sorted(energies)
     assert energies[-1] == pytest.approx(0.05, rel=FIXED_ENERGY)
-
-
-def test_folders_that_cannot_be_used_are_refused(capsys, tmp_path, unseen):
-    file = tmp_path / "a file"
-    file.write_text("mine")
-    assert "output" in refusal(capsys, *FAMILY, "-o", str(file))
-    folder = tmp_path / "folder"
-    assert run(capsys, *FAMILY, "--members", "1", "-o", str(folder))[0] == 1
-    assert "its alpha differs" in refusal(capsys, *FAMILY, "--alpha", "0.3", "-o", str(folder))
-    (folder / "family.json").write_text("{")
-    assert "family.json is damaged" in refusal(capsys, *FAMILY, "-o", str(folder))

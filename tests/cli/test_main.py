@@ -1,6 +1,7 @@
 """The command line: JSON, exit codes, one line for each kind of bad input, help with examples, files written."""
 
 import json
+from shlex import split
 
 import mpmath
 import pytest
@@ -11,22 +12,17 @@ from tests.cli.running import answer, run, shown
 from tests.reference import TWO_TORUS as REFERENCE
 from tests.tolerances import AMPLITUDE, SERIES_RESIDUAL
 
-SOLVE = {"-N": "16", "--alpha": "0.33", "--seeds": "1,2", "--omega": "0.19626,0.39046", "--order": "12"}
-PROPAGATE = {"-N": "32", "--seeds": "3,5", "--order": "2"}
-
-
-def arguments(verb, options, **changes):
-    merged = options | {("-N" if name == "N" else "--" + name.replace("_", "-")): value for name, value in changes.items()}
-    return [verb, *(part for name, value in merged.items() if value is not None for part in (name, value))]
+SOLVE = split("solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 12")
+BREATHER = split("solve -N 32 --alpha 0.33 --seeds 25 --omega 1.8830741847088537 --order 8")
 
 
 def test_propagate_prints_the_sequence(capsys):
-    out = shown(capsys, *arguments("propagate", PROPAGATE))
+    out = shown(capsys, *split("propagate -N 32 --seeds 3,5 --order 2"))
     assert out.splitlines() == ["D_0 = {3, 5}", "D_1 = {2, 6, 8, 10}", "D_2 = {1, 7, 9, 11, 13, 15}"]
 
 
 def test_solve_json_has_the_fixed_keys_and_the_reference_amplitudes(capsys):
-    record = answer(capsys, *arguments("solve", SOLVE))
+    record = answer(capsys, *SOLVE)
     assert {"amplitudes", "order", "frequency_order", "residual", "energy", "harmonic_energy", "warnings"} <= set(record)
     assert (record["order"], record["frequency_order"]) == (12, 12)
     for q, expected in zip(("1", "2"), REFERENCE.amplitudes[12], strict=True):
@@ -37,17 +33,14 @@ def test_solve_json_has_the_fixed_keys_and_the_reference_amplitudes(capsys):
 
 
 def test_frequency_order_is_its_own_option(capsys):
-    record = answer(capsys, *arguments("solve", SOLVE, frequency_order="4"))
+    record = answer(capsys, *SOLVE, "--frequency-order", "4")
     assert (record["order"], record["frequency_order"]) == (12, 4)
     assert float(record["amplitudes"]["1"]) == pytest.approx(float(REFERENCE.amplitudes[4][0]), rel=AMPLITUDE)
 
 
-BREATHER = {"-N": "32", "--alpha": "0.33", "--seeds": "25", "--omega": "1.8830741847088537", "--order": "8"}
-
-
 @pytest.mark.long
 def test_solve_with_digits_is_certified_and_judged(capsys):
-    record = answer(capsys, *arguments("solve", BREATHER, digits="30"))
+    record = answer(capsys, *BREATHER, "--digits", "30")
     assert (record["digits"], record["certified"], record["verdict"]) == (30, True, "converged")
     text = record["amplitudes"]["25"]
     series = lindstedt(Chain(32, alpha="0.33"), (25,), ("1.8830741847088537",), 8, digits=40)
@@ -61,7 +54,7 @@ def test_solve_with_digits_is_certified_and_judged(capsys):
 
 def test_coordinates_are_cut_at_their_own_order(capsys):
     """The amplitudes are those of the whole series, the residual that of the shorter coordinates."""
-    whole, cut = (answer(capsys, *arguments("solve", SOLVE, coordinate_order=order)) for order in (None, "6"))
+    whole, cut = (answer(capsys, *SOLVE, *order) for order in ([], ["--coordinate-order", "6"]))
     assert (cut["order"], cut["frequency_order"]) == (6, 12)
     assert cut["amplitudes"] == whole["amplitudes"]
     assert cut["assessment"]["residuals"] == whole["assessment"]["residuals"][:7]
@@ -70,7 +63,7 @@ def test_coordinates_are_cut_at_their_own_order(capsys):
 
 def test_show_json_is_the_record_of_solve(capsys, tmp_path):
     file = str(tmp_path / "torus.symfpu")
-    solved = answer(capsys, *arguments("solve", BREATHER, output=file))
+    solved = answer(capsys, *BREATHER, "--output", file)
     shown = answer(capsys, "show", file)
     assert {key: shown[key] for key in solved if key != "verdict"} == {key: solved[key] for key in solved if key != "verdict"}
     assert shown["assessment"]["verdict"] == solved["verdict"]

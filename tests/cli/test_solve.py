@@ -29,14 +29,11 @@ def test_an_energy_is_met_with_equal_shares(capsys, harmonic):
     assert found["energy_shares"] == {"1": "1", "2": "1"}
 
 
-def test_shares_are_by_seed_as_the_seeds_are_typed(capsys):
+def test_shares_and_amplitudes_are_by_seed_as_the_seeds_are_typed(capsys):
     found = record(capsys, "--energy", "0.01", "--shares", "3,1")
     torus = torus_at_energy(CHAIN, (1, 2), "0.01", order=2, energy_ratio={2: 3, 1: 1})
     assert found["amplitudes"] == by_seed(torus.amplitudes)
     assert found["energy_shares"] == {"1": "1", "2": "3"}
-
-
-def test_amplitudes_are_by_seed_as_the_seeds_are_typed(capsys):
     found = record(capsys, "--amplitudes", "0.2,0.1")
     assert found["amplitudes"] == {"1": "0.1", "2": "0.2"}
     torus = torus_at_amplitudes(CHAIN, {1: "0.1", 2: "0.2"}, 2)

@@ -35,6 +35,12 @@ def answers(heard, count):
     return [heard.get(timeout=WAIT) for _ in range(count)]
 
 
+def check_answer(asker, heard, kind, word):
+    """A wish has its one part, and the end."""
+    asker.ask(kind, word)
+    assert [part for _, _, part in answers(heard, 2)] == [(word,), DONE]
+
+
 def pid_of(process):
     return process._process.pid
 
@@ -49,19 +55,16 @@ def test_a_process_that_dies_at_work_is_replaced_at_the_next_wish(page):
     assert isinstance(died, Died)
     assert died.message == "the computing process has died (killed by signal 9); another one takes its place at the next choice"
     assert asker.seconds() == 0.0, "nothing is computed any more"
-    asker.ask(TERM, "again")
-    assert [part for _, _, part in answers(heard, 2)] == [("again",), DONE]
+    check_answer(asker, heard, TERM, "again")
 
 
 def test_a_process_that_dies_idle_is_replaced_at_the_next_wish(page):
     asker, heard, _ = page
-    asker.ask(FILE, "first")
-    assert [part for _, _, part in answers(heard, 2)] == [("first",), DONE]
+    check_answer(asker, heard, FILE, "first")
     os.kill(pid_of(asker._process), signal.SIGKILL)
     [(_, _, died)] = answers(heard, 1)
     assert isinstance(died, Died)
-    asker.ask(FILE, "second")
-    assert [part for _, _, part in answers(heard, 2)] == [("second",), DONE]
+    check_answer(asker, heard, FILE, "second")
 
 
 def test_a_wish_that_comes_before_the_death_is_heard_of_is_answered(page, monkeypatch):
@@ -94,8 +97,7 @@ def test_a_connection_is_closed_by_who_listens_to_it_alone(page):
     assert not process.alive
     assert not process.connection.closed
     goes_on.set()
-    asker.ask(FILE, "second")
-    assert [part for _, _, part in answers(heard, 2)] == [("second",), DONE]
+    check_answer(asker, heard, FILE, "second")
 
 
 def test_the_page_says_that_its_process_has_died_and_asks_for_the_formula_again():
@@ -112,8 +114,7 @@ def test_a_spare_process_that_has_died_is_not_taken(page):
     os.kill(pid_of(dead), signal.SIGKILL)
     dead._process.join()
     asker.cancel()  # takes the spare
-    asker.ask(TORUS, "again")
-    assert [part for _, _, part in answers(heard, 2)] == [("again",), DONE]
+    check_answer(asker, heard, TORUS, "again")
 
 
 @settings(max_examples=12)
