@@ -1,6 +1,7 @@
-"""Settings of the whole suite: hypothesis draws the same examples every time and leaves no files behind."""
+"""Settings of the whole suite: hypothesis draws the same examples every time and leaves no files behind; an executor."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from hypothesis import settings
@@ -19,3 +20,10 @@ def no_lines_of_progress(monkeypatch):
 def lines_of_any_length(monkeypatch):
     """As where output is piped; workers of a parallel run hand their width down, and lines would be folded at it."""
     monkeypatch.delenv("COLUMNS", raising=False)
+
+
+@pytest.fixture(scope="session")
+def threads():
+    """An executor of sweeps in this process, where others take seconds to start."""
+    with ThreadPoolExecutor(2) as pool:
+        yield pool

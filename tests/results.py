@@ -15,6 +15,7 @@ import numpy as np
 import symfpu
 from symfpu import Chain, fpu_trajectory, lindstedt
 from tests.bundles.test_bundle import SERIES
+from tests.certified.tori import torus as two_angles
 
 PAIR, SINGLE = Chain(8, alpha="0.3"), Chain(8, alpha="0.4", beta="0.1")
 COPIES = {"pickle": lambda x: pickle.loads(pickle.dumps(x)), "copy": copy.copy, "deepcopy": copy.deepcopy}
@@ -37,14 +38,6 @@ def torus(digits=None):
 @cache
 def refined():
     return symfpu.refine(torus())
-
-
-@cache
-def two_angles():
-    """A refined torus of the smallest chain that has one."""
-    amplitudes = {1: "0.2", 2: "0.1"}
-    guess = symfpu.torus_at_amplitudes(Chain(3, alpha="0.3"), amplitudes, order=4)
-    return symfpu.refine(guess, amplitudes=amplitudes)
 
 
 @cache

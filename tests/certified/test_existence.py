@@ -24,6 +24,7 @@ from symfpu.certified.rounded_orbit import rounded_orbit
 from symfpu.proofs import check_existence
 from symfpu.proofs.reading import dyadic
 from symfpu.reports.existence import existence_text
+from tests.proofs.certificate_files import bounds_of
 from tests.tolerances import (
     FREE,
     NO_HARMONIC,
@@ -210,10 +211,7 @@ def test_the_checker_agrees_in_every_bound(name, tmp_path):
     theorem, *_ = checked(found, tmp_path)
     assert f"N = {found.chain.N} {'particles' if name in WAVES else 'bonds'}" in theorem
     data = json.loads((tmp_path / "proof.json").read_text())
-    claim = check_existence.read_claim(data)
-    inverse = check_existence.read_inverse(data, claim)
-    bonds = check_existence.Bonds(claim, inverse.last + inverse.slope_harmonics)
-    bounds = check_existence.Bounds(claim, bonds, inverse)
+    _, bounds = bounds_of(data)
     radius = dyadic(data["unique"], "unique")
     assert bounds.length() == 0
     ours = [found.residual, 1 + found.linear, found.curvature]

@@ -1,6 +1,5 @@
 """The verb atlas: borders and power laws printed, a file that is gone on with, and what it refuses."""
 
-from concurrent.futures import ThreadPoolExecutor
 from shlex import split
 
 import pytest
@@ -39,13 +38,12 @@ def test_a_column_that_fails_is_said_and_others_are_there(capsys):
     assert "followed as far as asked" in out
 
 
-def test_what_is_asked_for_reaches_the_function(capsys, monkeypatch):
+def test_what_is_asked_for_reaches_the_function(capsys, monkeypatch, threads):
     asked = {}
 
     def heard(chains, packets, order, **how):
         asked.update(how, chains=chains, packets=packets, order=order)
-        with ThreadPoolExecutor(1) as pool:
-            return atlas([{"N": 1}], ["1"], 1, executor=pool)
+        return atlas([{"N": 1}], ["1"], 1, executor=threads)
 
     monkeypatch.setattr(verb, "atlas", heard)
     words = "atlas --potential toda:1/2 --lengths 8,16 --order 4,6 --places 1e-3,0.1 --per-particle --time 1e4 --draws 3"

@@ -2,7 +2,6 @@
 
 import json
 import os
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -16,13 +15,12 @@ RUN = (Chain(4, beta=1), [0.1, 0, 0], [0, 0, 0], 10)
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory):
+def files(tmp_path_factory, threads):
     folder = tmp_path_factory.mktemp("files")
     prove_existence(breather_at_amplitude(Chain(3, alpha="0.3"), 1, "0.1")).write(folder / "proof")
     integrate(*RUN, step=0.125, file=folder / "checkpoint")
     save(folder / "orbit", integrate(*RUN, step=0.125))
-    with ThreadPoolExecutor(1) as pool:
-        sweep(pow, [{"base": 2, "exp": 3}], executor=pool, file=folder / "sweep")
+    sweep(pow, [{"base": 2, "exp": 3}], executor=threads, file=folder / "sweep")
     np.savez(folder / "arrays.npz", x=np.zeros(3))
     (folder / "text").write_text("Q = 1")
     os.mkfifo(folder / "pipe")  # nobody writes it: opening it would wait for ever

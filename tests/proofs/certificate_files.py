@@ -4,6 +4,7 @@ import copy
 import hashlib
 import json
 
+from symfpu.proofs import check_existence
 from symfpu.proofs.reading import CertificateError
 
 
@@ -62,3 +63,11 @@ def replaced(data, place, value):
 
 def moved(value):
     return value + 1 if isinstance(value, int) else f"{value}1"
+
+
+def bounds_of(data):
+    """What a certificate of existence claims, and the bounds of its checker."""
+    claim = check_existence.read_claim(data)
+    inverse = check_existence.read_inverse(data, claim)
+    bonds = check_existence.Bonds(claim, inverse.last + inverse.slope_harmonics)
+    return claim, check_existence.Bounds(claim, bonds, inverse)

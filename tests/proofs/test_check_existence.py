@@ -1,7 +1,6 @@
 """Certificates of existence: every number altered is refused, and with a digest made to fit whatever the theorem would not give."""
 
 import copy
-import json
 import math
 import re
 from fractions import Fraction
@@ -21,7 +20,7 @@ from symfpu.proofs.check_existence.reading import unpacked
 from symfpu.proofs.check_existence.theorem import check_contraction
 from symfpu.proofs.check_existence.wording import decimal_interval, theorem_text
 from symfpu.proofs.reading import CertificateError
-from tests.proofs.certificate_files import altered, check_refused, reason, sealed
+from tests.proofs.certificate_files import altered, bounds_of, check_refused, reason, sealed
 
 
 def both():
@@ -185,18 +184,9 @@ def test_the_printed_radius_of_uniqueness_is_not_above_the_one_checked(unique):
     assert unique * Fraction(99, 100) < within <= unique
 
 
-def bounds_of(name):
-    """Of a certificate, with its claim."""
-    data = json.loads(json.dumps(certificate(name)))
-    claim = check_existence.read_claim(data)
-    inverse = check_existence.read_inverse(data, claim)
-    bonds = check_existence.Bonds(claim, inverse.last + inverse.slope_harmonics)
-    return claim, check_existence.Bounds(claim, bonds, inverse)
-
-
 def test_the_length_of_a_segment_counts_in_its_contraction():
     """The largest R of its middle is too large for its ends."""
-    _, bounds = bounds_of("segment of amplitude")
+    _, bounds = bounds_of(certificate("segment of amplitude"))
     assert check_contraction(bounds, Fraction(0), bounds.linear(), Fraction(1, 10**9), Fraction(1, 10**6)) is None
     low, high = Fraction(0), Fraction(1)
     while high - low > bounds.length() / 8:
@@ -209,7 +199,7 @@ def test_the_length_of_a_segment_counts_in_its_contraction():
 
 
 def test_the_energy_depends_on_far_harmonics_no_more_than_its_bound():
-    claim, bounds = bounds_of("energy")
+    claim, bounds = bounds_of(certificate("energy"))
     condition, bonds = bounds.condition, bounds.bonds
     for first in (1, 4, 9):
         bound = condition.farthest(first, bonds)

@@ -1,7 +1,6 @@
 """Proofs of the propagation rule for any potential: prover, checker and universal form agree; what proves nothing is refused."""
 
 import json
-from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 
 import pytest
@@ -196,14 +195,13 @@ def test_closed_forms_of_both_models_refuse_other_chains_by_name(closed_form):
 # --- sweeps
 
 
-def test_a_sweep_of_a_potential_goes_on_from_its_file_and_from_no_other(tmp_path):
-    file = tmp_path / "toda.jsonl"
-    with ThreadPoolExecutor(1) as pool:
-        first = sweep_propagation((4, 5), 1, 2, potential="toda:1", executor=pool, file=file)
-        longer = sweep_propagation((4, 5, 6), 2, 2, potential="toda:1", executor=pool, file=file)
-        for order, potential in ((2, "toda:2"), (3, "toda:1")):
-            with pytest.raises(InputError, match=r"^file = "):
-                sweep_propagation((4, 5), 1, order, potential=potential, executor=pool, file=file)
+def test_a_sweep_of_a_potential_goes_on_from_its_file_and_from_no_other(tmp_path, threads):
+    kept = {"executor": threads, "file": tmp_path / "toda.jsonl"}
+    first = sweep_propagation((4, 5), 1, 2, potential="toda:1", **kept)
+    longer = sweep_propagation((4, 5, 6), 2, 2, potential="toda:1", **kept)
+    for order, potential in ((2, "toda:2"), (3, "toda:1")):
+        with pytest.raises(InputError, match=r"^file = "):
+            sweep_propagation((4, 5), 1, order, potential=potential, **kept)
     assert (first.model, len(first.cases)) == ("toda:1", 7)
     assert set(first.cases) <= set(longer.cases)
     assert all(case.verdict == "proved" and case.corrected_rule_holds for case in longer.cases)
@@ -222,11 +220,10 @@ SWEPT = {
 
 @pytest.mark.long
 @pytest.mark.parametrize("potential", SWEPT)
-def test_sweeps_of_the_page(potential):
+def test_sweeps_of_the_page(potential, threads):
     """docs/propagation.md: exceptions where no squares act, and none of the corrected rule."""
     order, exceptions = SWEPT[potential]
-    with ThreadPoolExecutor(2) as pool:
-        sweep = sweep_propagation(range(2, 11), 3, order, potential=potential, executor=pool)
+    sweep = sweep_propagation(range(2, 11), 3, order, potential=potential, executor=threads)
     assert len(sweep.cases) == 375
     assert (len(sweep.exceptions), {case.verdict for case in sweep.cases} - {"proved", "refuted"}) == (exceptions, set())
     assert all(case.corrected_rule_holds for case in sweep.cases)

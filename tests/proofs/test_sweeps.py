@@ -2,7 +2,7 @@
 
 import multiprocessing
 import os
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
 from itertools import combinations
 from math import comb
 
@@ -11,12 +11,6 @@ import pytest
 from symfpu import SweepIncomplete, TooLarge, sweep_propagation
 from symfpu.proofs import sweeps
 from symfpu.reports.proofs import sweep_markdown
-
-
-@pytest.fixture(scope="module")
-def threads():
-    with ThreadPoolExecutor(2) as pool:
-        yield pool
 
 
 @pytest.fixture(scope="module")

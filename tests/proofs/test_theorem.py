@@ -2,7 +2,6 @@
 
 import json
 import random
-from concurrent.futures import ThreadPoolExecutor
 from itertools import combinations_with_replacement, permutations, product
 from math import pi, sin
 from operator import mul
@@ -238,7 +237,6 @@ def test_exceptions_at_order_one_are_those_of_theorem_6(s):
 
 
 @pytest.mark.long
-def test_processes_decide_as_this_one_does():
+def test_processes_decide_as_this_one_does(threads):
     """So many flats that worker processes share them."""
-    with ThreadPoolExecutor(1) as pool:
-        assert repr(prove_for_all_N("alpha", 2, 5)) == repr(prove_for_all_N("alpha", 2, 5, executor=pool))
+    assert repr(prove_for_all_N("alpha", 2, 5)) == repr(prove_for_all_N("alpha", 2, 5, executor=threads))

@@ -19,12 +19,6 @@ from tests.system import files_up_to
 TEN = [{"n": n} for n in range(10)]
 
 
-@pytest.fixture(scope="module")
-def threads():
-    with ThreadPoolExecutor(2) as pool:
-        yield pool
-
-
 def lines_of(file):
     """The entries, each of which agrees with its checksum."""
     return list(map(entry_of, file.read_bytes().splitlines()))
