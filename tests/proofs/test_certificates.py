@@ -7,6 +7,7 @@ import pytest
 
 from symfpu import InputError, SymfpuError, coupling_sequence, excitation_sequence, prove_propagation
 from symfpu.proofs.certificates import random_point
+from tests.refusals import each, refused
 from tests.tolerances import ERROR_PROBABILITY
 
 
@@ -82,21 +83,9 @@ def test_certificate_is_plain_json(tmp_path):
         proof.write(tmp_path / "missing" / "c.json")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "name"),
-    [
-        ({"N": 1}, "N"),
-        ({"seeds": (8,)}, "seeds"),
-        ({"seeds": ()}, "seeds"),
-        ({"order": -1}, "order"),
-        ({"model": "alpha+beta"}, "model"),
-        ({"points": -1}, "points"),
-    ],
-)
-def test_bad_arguments_are_named(arguments, name):
-    with pytest.raises(InputError) as caught:
-        prove_propagation(**({"N": 8, "seeds": (1,), "order": 2} | arguments))
-    assert caught.value.argument == name
+@each(N=[1], seeds=[(8,), ()], order=[-1], model=["alpha+beta"], points=[-1])
+def test_bad_arguments_are_named(name, value):
+    refused(prove_propagation, name, value, N=8, seeds=(1,), order=2)
 
 
 def test_order_too_high_for_exact_sums_says_so():

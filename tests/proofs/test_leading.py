@@ -13,6 +13,7 @@ from symfpu.algebra.formulas import expressions, multiplier_symbol
 from symfpu.algebra.program_values import terms_of
 from symfpu.proofs.kernel_trees import appendix_d, count_trees, kernel_trees
 from symfpu.proofs.leading import LeadingTerm, leading_factor, leading_kernel, leading_terms
+from tests.refusals import refused
 
 ORDER = {"alpha": 4, "beta": 2}
 
@@ -342,33 +343,28 @@ def test_seeds_in_any_order():
     assert leading_factor(chain, (5, 2), 7, (5, 2), (-1, 1)) == leading_factor(chain, (2, 5), 7, (5, 2), (1, -1))
 
 
-@pytest.mark.parametrize(
-    ("call", "argument"),
-    [
-        (lambda: leading_term(Chain(N=8, alpha=1), (1, 2), 2), "q"),
-        (lambda: leading_term(Chain(N=8, beta=1), (1,), 2), "q"),
-        (lambda: leading_term(Chain(N=8, alpha=1), (1,), 8), "q"),
-        (lambda: leading_term(Chain(N=8, alpha=1), (1,), 0), "q"),
-        (lambda: leading_term(Chain(N=8, alpha=1), (1,), 1.5), "q"),
-        (lambda: leading_term(Chain(N=8, alpha=1, beta=1), (1,), 2), "chain"),
-        (lambda: leading_terms(Chain(N=8, alpha=1), (8,), 1), "seeds"),
-        (lambda: leading_terms(Chain(N=8, alpha=1), (1,), -1), "order"),
-        (lambda: lemma_holds(Chain(N=8, alpha=1), (1,), 1.0), "order"),
-        (lambda: leading_kernel(Chain(N=8, alpha=1), (1,), 9, (1, 1), (1, 1)), "q"),
-        (lambda: leading_kernel(Chain(N=8, alpha=1), (1,), 3, (1, 2), (1, 1)), "modes"),
-        (lambda: leading_kernel(Chain(N=8, alpha=1), (1,), 3, (), ()), "modes"),
-        (lambda: leading_kernel(Chain(N=8, beta=1), (1,), 3, (1, 1), (1, 1)), "modes"),
-        (lambda: leading_factor(Chain(N=8, alpha=1), (1,), 3, (1, 1), (1,)), "signs"),
-        (lambda: leading_factor(Chain(N=8, alpha=1), (1,), 3, (1, 1), (1, 2)), "signs"),
-        (lambda: kernel_trees(-1, 2), "order"),
-        (lambda: appendix_d(0), "order"),
-        (lambda: appendix_d(model="gamma"), "model"),
-    ],
-)
-def test_bad_input(call, argument):
-    with pytest.raises(InputError) as caught:
-        call()
-    assert caught.value.argument == argument
+ONE_SEED = {"chain": Chain(N=8, alpha=1), "seeds": (1,)}
+AT_ONE = ONE_SEED | {"q": 3, "modes": (1, 1), "signs": (1, 1)}
+BAD = [
+    *((leading_term, ONE_SEED, "q", q) for q in (1, 8, 0, 1.5)),
+    (leading_term, ONE_SEED | {"chain": Chain(N=8, beta=1)}, "q", 2),
+    (leading_term, ONE_SEED | {"q": 2}, "chain", Chain(N=8, alpha=1, beta=1)),
+    (leading_terms, ONE_SEED | {"order": 1}, "seeds", (8,)),
+    (leading_terms, ONE_SEED, "order", -1),
+    (lemma_holds, ONE_SEED, "order", 1.0),
+    (leading_kernel, AT_ONE, "q", 9),
+    *((leading_kernel, AT_ONE | {"signs": (1,) * len(n)}, "modes", n) for n in ((1, 2), ())),
+    (leading_kernel, AT_ONE | {"chain": Chain(N=8, beta=1)}, "modes", (1, 1)),
+    *((leading_factor, AT_ONE, "signs", signs) for signs in ((1,), (1, 2))),
+    (kernel_trees, {"factors": 2}, "order", -1),
+    (appendix_d, {}, "order", 0),
+    (appendix_d, {}, "model", "gamma"),
+]
+
+
+@pytest.mark.parametrize(("function", "given", "name", "value"), BAD)
+def test_bad_input(function, given, name, value):
+    refused(function, name, value, **given)
 
 
 @pytest.mark.parametrize(

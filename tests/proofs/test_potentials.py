@@ -14,6 +14,7 @@ from symfpu.proofs.reading import CertificateError
 from tests.proofs.certificate_files import sealed
 from tests.proofs.test_check_propagation import SAYS
 from tests.proofs.test_forgeries import is_valid
+from tests.refusals import each, refused
 
 CASES = {
     "toda:1/2": (8, (1, 4), 3),
@@ -164,19 +165,10 @@ class Rounded(Toda):
     exact = False
 
 
-@pytest.mark.parametrize(
-    ("law", "argument"),
-    [
-        ({"potential": "toda:1", "model": "alpha"}, "model"),
-        ({"model": "alpha+beta"}, "model"),
-        ({"potential": "spring:1"}, "potential"),
-        ({"potential": Rounded(Fraction(1, 2))}, "potential"),
-    ],
-)
-def test_what_proves_nothing_is_refused_by_name(law, argument):
-    with pytest.raises(InputError) as caught:
-        prove_propagation(6, (1,), 2, **law)
-    assert caught.value.argument == argument
+@each(model=["alpha"], potential=["spring:1", Rounded(Fraction(1, 2))])
+def test_what_proves_nothing_is_refused_by_name(name, value):
+    """Also a model beside a potential."""
+    refused(prove_propagation, name, value, N=6, seeds=(1,), order=2, potential="toda:1")
 
 
 @pytest.mark.parametrize(
