@@ -6,7 +6,6 @@ Needs JupyterLab, which is no part of the development extra: pip install jupyter
 import json
 import os
 import shutil
-import socket
 import subprocess
 import sys
 import time
@@ -16,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from symfpu.workbench.server import free_port
 from tests.workbench.chromium import browser
 
 NOTEBOOKS = Path(__file__).parents[1] / "notebooks"
@@ -30,12 +30,6 @@ PICTURE = ".widget-interact .widget-output img"
 
 def test_there_are_sliders():
     assert len(WITH_SLIDERS) == 4
-
-
-def free_port():
-    with socket.socket() as one:
-        one.bind(("127.0.0.1", 0))
-        return one.getsockname()[1]
 
 
 def answers(address):
