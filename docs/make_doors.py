@@ -310,8 +310,8 @@ NEWTON: dict[str, Door] = {
         c.family, 1, c.family.members[1].torus.frequency
     ),
     "periodic_orbit": lambda c: symfpu.periodic_orbit(c.chain, 1, c.breather.frequency),
-    "periodic_orbit_digits": lambda c: symfpu.periodic_orbit_digits(c.breather, 25),
     "refine": lambda c: c.refined,
+    "refine, digits": lambda c: symfpu.refine(c.refined, digits=25),
     "travelling_breather": lambda c: c.wave,
     "twist": lambda c: symfpu.twist(c.periodic),
     "twist_at_rest": lambda c: symfpu.twist_at_rest(c.chain, SEEDS),
@@ -519,7 +519,7 @@ cosh r - 1) and a ring of the alpha model.
 
 - Orbits, tangent maps, Newton's method and Floquet multipliers take the closed potential, not its Taylor series.
 - The scheme `aba864_modes` multiplies polynomials of modes: it is for polynomials.
-- The many digits of a breather (`periodic_orbit_digits`) are of polynomials, and of tensions made of exponentials and powers with
+- Many digits of a torus (`refine(digits=)`) are of polynomials, and of tensions made of exponentials and powers with
   rational numbers: their Taylor series is cut where a bound of the rest is below the last place. Even ones (cosh r - 1) and other
   expressions have no such bound here.
 - Laws of the energy profile and the Lemma are stated for alpha or beta alone.

@@ -70,7 +70,6 @@ from symfpu.breathers.at_energy import breather_at_energy as breather_at_energy
 from symfpu.breathers.balance import HarmonicBalance as HarmonicBalance
 from symfpu.breathers.balance import breather_at_amplitude as breather_at_amplitude
 from symfpu.breathers.balance import periodic_orbit as periodic_orbit
-from symfpu.breathers.precise_orbit import periodic_orbit_digits as periodic_orbit_digits
 from symfpu.certified.existence import ExistenceProof as ExistenceProof
 from symfpu.certified.existence import prove_existence as prove_existence
 from symfpu.breathers.floquet import Floquet as Floquet

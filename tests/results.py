@@ -55,7 +55,7 @@ def stability():
 def hyperbolic_in_digits():
     """Complex and real numbers: sigma_1 is hyperbolic, sigma_3 elliptic."""
     breather = symfpu.breather_at_amplitude(Chain(4, alpha="0.5"), 2, "1")
-    return symfpu.normal_modes(symfpu.periodic_orbit_digits(breather, 20, amplitude="1"))
+    return symfpu.normal_modes(symfpu.refine(breather, digits=20, amplitudes={2: "1"}))
 
 
 @cache
@@ -247,7 +247,7 @@ CASES = {
     "PadeSum": Case(lambda: symfpu.pade_frequencies(series(30), torus(30).amplitudes), lambda x: x.values),
     "ParametricResonance": Case(lambda: stability().resonances[0], lambda x: x.condition),
     "Torus, HarmonicBalance": Case(orbit, motion),
-    "Torus, IterativeRefinement, breather": Case(lambda: symfpu.periodic_orbit_digits(orbit(), 30), lambda x: (x.amplitude, motion(x))),
+    "Torus, IterativeRefinement, breather": Case(lambda: symfpu.refine(orbit(), digits=30), lambda x: (x.amplitude, motion(x))),
     "Torus, IterativeRefinement, waves": Case(
         lambda: symfpu.refine(symfpu.solve_amplitudes(waves()), digits=20),
         lambda x: (x.amplitudes, x.origin.error, x.Q(TIMES), x.x(TIMES), x.energy()),

@@ -235,7 +235,7 @@ def prove_existence(
     """A proof that the chain has a periodic orbit near the computed one, or an error that says why.
 
     orbit : of one angle, of a chain with fixed ends: from `periodic_orbit`,
-        `periodic_orbit_digits`, `breather_at_energy` and their sisters, or a series of one seed;
+        `breather_at_energy` and their sisters, or of `refine`, or a series of one seed;
         or a travelling wave of a ring, from `travelling_breather`. Its phase does not matter. All
         is dimensionless.
     amplitude, energy : that of the orbit, an exact number: the true orbit has exactly this A or H,

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import shlex
 import warnings
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from symfpu.breathers.at_energy import breather_at_energy
 from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
 from symfpu.breathers.floquet import floquet
-from symfpu.breathers.precise_orbit import periodic_orbit_digits
-from symfpu.chain.chain import Chain, require_fixed_ends
+from symfpu.chain.chain import Chain
 from symfpu.cli.chains import (
     AlphaOption,
     BetaOption,
@@ -36,14 +35,11 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
+from symfpu.refinement.tori import refine
 from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import save
 from symfpu.tori.torus import Torus
-
-DOUBLE_ENERGY = (
-    "the energy is met in doubles; the digits are of the orbit with the frequency found"
-)
 
 
 @app.command(epilog="Example: symfpu breather -N 32 --alpha 0.33 --seed 1 --energy 0.01")
@@ -79,23 +75,21 @@ def breather(
     chain = chain_of(bonds, alpha, beta, potential, ends)
     mode, places = whole("seed", seed), optional("digits", digits)
     one_of({"omega": omega, "amplitude": amplitude, "energy": energy})
-    if places is not None:
-        require_fixed_ends(chain)
     file = output_named(output)
     picture = picture_named(plot)
-    doubts: tuple[str, ...]
-    doubts = (DOUBLE_ENERGY,) if energy is not None and places is not None else ()
     with progress_bar("Newton's method") as advance:
         orbit: Torus
         with warnings.catch_warnings(record=True) as several:
             warnings.simplefilter("always", UserWarning)
             orbit = _found(chain, mode, omega, amplitude, energy)
-        doubts += tuple(str(w.message) for w in several if w.category is UserWarning)
+        doubts = tuple(str(w.message) for w in several if w.category is UserWarning)
         if places is not None:
-            advance("digits", NO_FRACTION)
-            orbit = periodic_orbit_digits(
-                orbit, places, frequency=omega, amplitude=amplitude
-            )
+            given: dict[str, Any] = {
+                "frequencies": None if omega is None else {mode: omega},
+                "amplitudes": None if amplitude is None else {mode: amplitude},
+                "energy": energy,
+            }
+            orbit = refine(orbit, **given, digits=places, progress=advance)
         advance("multipliers" if multipliers else "energies", NO_FRACTION)
         stability = floquet(orbit) if multipliers else None
         if file:

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.balance import periodic_orbit
-from symfpu.breathers.precise_orbit import periodic_orbit_digits
 from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import Progress
 from symfpu.localization.profiles import fpu_trajectory
@@ -40,6 +39,7 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
+from symfpu.refinement.tori import refine
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
 
@@ -57,9 +57,7 @@ def figure7(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     row = printed_row("Fig. 7")
     chain = row.chain
     torus = printed_torus(row)
-    newton = periodic_orbit_digits(
-        periodic_orbit(chain, 1, row.frequencies[0]), NEWTON_DIGITS
-    )
+    newton = refine(periodic_orbit(chain, 1, row.frequencies[0]), digits=NEWTON_DIGITS)
     fpu = fpu_trajectory(chain, printed_amplitudes(row))
     starts: dict[str, Starting | tuple[Floats, Floats]] = {
         "PLn": torus,

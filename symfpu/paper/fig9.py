@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from symfpu.action_angle.foretold import ForetoldIndices
 from symfpu.breathers.balance import periodic_orbit
-from symfpu.breathers.precise_orbit import periodic_orbit_digits
 from symfpu.dynamics.dimension import TorusDimension
 from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.panels import Panel
@@ -62,6 +61,7 @@ from symfpu.paper.starts import (
     profile_panel,
 )
 from symfpu.paper.table import rounds_to
+from symfpu.refinement.tori import refine
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
 
@@ -88,7 +88,7 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     chain = row.chain
     progress("fig9: series", NO_FRACTION)
     torus = printed_torus(row)
-    newton = periodic_orbit_digits(periodic_orbit(chain, 1, row.frequencies[0]), DIGITS)
+    newton = refine(periodic_orbit(chain, 1, row.frequencies[0]), digits=DIGITS)
     orbits = _trajectories(row, progress)
     looks = AVERAGING_LOOKS
     exact = integrated_orbit("fig9 breather", chain, newton, TIME, progress, samples=looks)

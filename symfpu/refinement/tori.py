@@ -25,6 +25,8 @@ from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.iterative_refinement import Failure
 from symfpu.refinement.prescribed import Prescribed, prescribed_by
 from symfpu.refinement.refined_torus import (
+    DEGENERATE,
+    NEARER,
     TOLERANCE,
     USEFUL,
     Newton,
@@ -170,7 +172,8 @@ def refine(
         guess = guess_of(near, prescribed)
         return torus_to_digits(guess, digits, path, progress or unheard)
     except Failure as failure:
-        raise NoTorus(str(failure), near, near.residual()) from None
+        advice = DEGENERATE if prescribed.held_frequencies else NEARER
+        raise NoTorus(str(failure), near, near.residual(), advice) from None
 
 
 def _in_doubles(torus: Torus, prescribed: Prescribed, how: dict[str, Any]) -> Torus[Newton]:
@@ -185,7 +188,8 @@ def _in_doubles(torus: Torus, prescribed: Prescribed, how: dict[str, Any]) -> To
 
 def _near(torus: Torus, prescribed: Prescribed, how: dict[str, Any]) -> Torus:
     """The torus from which digits are refined: the given one, if it is what is asked for."""
-    same = prescribed.held_frequencies == tuple(torus.frequencies)
-    if same and isinstance(torus.origin, Newton | IterativeRefinement):
-        return torus
+    if prescribed.held_frequencies == tuple(torus.frequencies):
+        doubles = torus if torus.digits is None else torus.in_doubles()
+        if doubles.residual() <= how["tolerance"]:
+            return torus
     return _in_doubles(torus, prescribed, how)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, actions, breather_at_amplitude, periodic_orbit_digits, refine, toda_torus, torus_at_amplitudes, unfold
+from symfpu import Chain, InputError, actions, breather_at_amplitude, refine, toda_torus, torus_at_amplitudes, unfold
 from tests.tolerances import NEWTON_TWIST, QUADRATURE, ROUNDING
 
 SEEDS = (1, 3)
@@ -39,7 +39,7 @@ def test_the_integral_along_an_angle():
 
 def test_digits_of_the_solution():
     orbit = breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.3")
-    precise = actions(periodic_orbit_digits(orbit, 40))[1]
+    precise = actions(refine(orbit, digits=40))[1]
     assert precise.digits == 40
     assert float(precise) == pytest.approx(actions(orbit)[1], rel=NEWTON_TWIST)
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, actions, breather_at_amplitude, periodic_orbit_digits, refine, torus_at_amplitudes, twist
+from symfpu import Chain, actions, breather_at_amplitude, refine, torus_at_amplitudes, twist
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.linear_system import SMALLEST_BLOCK
 from tests.action_angle.test_actions import SEEDS, refined_toda
@@ -86,14 +86,14 @@ def test_digits_of_a_torus(law, seed):
 def test_digits_of_a_breather():
     chain, given = Chain(5, alpha="0.3", beta="0.2"), {2: "0.4"}
     orbit = breather_at_amplitude(chain, 2, "0.4")
-    found = twist(periodic_orbit_digits(orbit, 30, amplitude="0.4"))
+    found = twist(refine(orbit, digits=30, amplitudes={2: "0.4"}))
     nearby = [moved(given, 2, part)[2] for part in ("1e-12", "-1e-12")]
-    ends = [periodic_orbit_digits(orbit, 40, amplitude=A) for A in nearby]
+    ends = [refine(orbit, digits=40, amplitudes={2: A}) for A in nearby]
     assert missed(found, ends) < PRECISE_TWIST
 
 
 def test_steps_that_gain_nothing_are_named(monkeypatch):
-    orbit = periodic_orbit_digits(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), 20)
+    orbit = refine(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), digits=20)
     monkeypatch.setattr(iterative_refinement, "MOST_STEPS", 1)
     with pytest.raises(symfpu.NoTwist, match=r"iterative refinement stops at a residual or update of 1e-.*in_doubles"):
         twist(orbit)

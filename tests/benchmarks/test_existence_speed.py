@@ -2,7 +2,7 @@
 
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, breather_at_energy, periodic_orbit, periodic_orbit_digits, prove_existence
+from symfpu import Chain, breather_at_amplitude, breather_at_energy, periodic_orbit, prove_existence, refine
 from symfpu.proofs.checkers import verify_certificate
 
 SHORT = Chain(N=32, alpha="0.33")
@@ -21,7 +21,7 @@ CASES = {
 @pytest.fixture(scope="module", params=list(CASES))
 def case(request):
     make, digits, given = CASES[request.param]
-    orbit = periodic_orbit_digits(make(), digits)
+    orbit = refine(make(), digits=digits)
     return request.param, orbit, given, prove_existence(orbit, **given)
 
 

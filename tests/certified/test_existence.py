@@ -14,7 +14,7 @@ import psutil
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_amplitude, periodic_orbit, periodic_orbit_digits, prove_existence, travelling_breather
+from symfpu import Chain, InputError, breather_at_amplitude, periodic_orbit, prove_existence, refine, travelling_breather
 from symfpu.breathers.equations import Balance
 from symfpu.certified.bond_balls import SPARE_BITS, BondBalls
 from symfpu.certified.contraction import Attempt, places_of
@@ -105,7 +105,7 @@ def rows_of(found, key, length):
 @pytest.mark.parametrize("name", OF_FREQUENCY)
 def test_the_true_orbit_is_where_the_theorem_says(name):
     """Forty digits are the true orbit as far as radii of doubles can see."""
-    found, precise = proof(name), periodic_orbit_digits(orbit(name), 40)
+    found, precise = proof(name), refine(orbit(name), digits=40)
     with mpmath.workdps(50):
         rows = stretches_of(precise)
         distance = np.abs(rows - rows_of(found, "orbit", len(rows))).sum()
@@ -122,7 +122,7 @@ def test_the_frequency_is_where_the_theorem_says(name):
     for sign in (-1, 1):
         omega = found.frequency + sign * Fraction(found.frequency_radius)
         near = replace(orbit(name), frequencies=(omega,))
-        precise = periodic_orbit_digits(near, 40)
+        precise = refine(near, digits=40)
         own = precise.amplitude if found.fixed == "amplitude" else precise.energy()
         with mpmath.workdps(50):
             excess.append(own - mpmath.mpf(found.value.numerator) / found.value.denominator)
@@ -240,7 +240,7 @@ def test_the_derivative_is_that_of_harmonic_balance(name):
 
 def test_the_radius_falls_with_the_digits():
     near = orbit("alpha")
-    radii = [prove_existence(periodic_orbit_digits(near, digits)).radius for digits in (20, 40)]
+    radii = [prove_existence(refine(near, digits=digits)).radius for digits in (20, 40)]
     for digits, radius in zip((20, 40), radii, strict=True):
         assert 10.0 ** (-digits - 8) < radius < 10.0**-digits
 
@@ -259,7 +259,7 @@ def test_the_radius_of_waves_falls_with_the_digits_asked_for(name, digits, tmp_p
 def test_digits_asked_for_are_those_of_the_other_route():
     """A double refined by the proof's own Newton method, and by the sums of harmonic balance in many digits."""
     near = orbit("alpha")
-    asked, made = prove_existence(near, digits=40), prove_existence(periodic_orbit_digits(near, 40))
+    asked, made = prove_existence(near, digits=40), prove_existence(refine(near, digits=40))
     assert asked.frequency == made.frequency
     assert abs(asked.energy - made.energy) < asked.energy_radius + made.energy_radius
     with pytest.raises(InputError, match="digits"):
@@ -374,13 +374,13 @@ def test_what_the_theorem_is_not_about_is_refused():
 
 @cache
 def of_figure(seed, omega):
-    return periodic_orbit_digits(periodic_orbit(FIG9, seed, omega), 32)
+    return refine(periodic_orbit(FIG9, seed, omega), digits=32)
 
 
 @cache
 def of_energy(energy):
     """At H = 0.75 the family from rest follows harmonic 14 of mode 16, and has 115 harmonics."""
-    return periodic_orbit_digits(symfpu.breather_at_energy(FIG9, 1, energy), 30)
+    return refine(symfpu.breather_at_energy(FIG9, 1, energy), digits=30)
 
 
 FIGURE_9 = (of_figure, 1, "0.09844127049688513")

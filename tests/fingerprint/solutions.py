@@ -73,8 +73,8 @@ def breathers():
     yield from told("at frequency", symfpu.periodic_orbit(ALPHA, 1, "0.3905"))
     yield from told("at energy", symfpu.breather_at_energy(Chain(6, beta=1), 5, "0.5"))
     yield from told("at harmonic energy", symfpu.breather_at_energy(ALPHA, 2, "0.01", harmonic=True))
-    yield from told("digits", symfpu.periodic_orbit_digits(breather("both"), 30))
-    yield from told("digits at amplitude", symfpu.periodic_orbit_digits(breather("alpha"), 25, amplitude="0.31"))
+    yield from told("digits", symfpu.refine(breather("both"), digits=30))
+    yield from told("digits at amplitude", symfpu.refine(breather("alpha"), digits=25, amplitudes={1: "0.31"}))
     yield "law", symfpu.breather_law(Chain(32, alpha="0.33"), 1e-4)
 
 

@@ -77,7 +77,7 @@ def existence():
     proof = prove_existence(orbit())
     yield "breather", proof.record()
     yield "breather, stability", prove_stability(proof).record()
-    yield "digits", prove_existence(symfpu.periodic_orbit_digits(orbit(), 30)).record()
+    yield "digits", prove_existence(symfpu.refine(orbit(), digits=30)).record()
     yield "interval", prove_existence(orbit(), amplitude="0.3", half_width="1e-6").record()
     wave = symfpu.travelling_breather(Chain(16, beta=1, ends="periodic"), 2, amplitude="0.8")
     yield "wave", prove_existence(wave).record()

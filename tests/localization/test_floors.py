@@ -41,7 +41,7 @@ def orbit(case):
 
 @lru_cache
 def precise(case):
-    return symfpu.periodic_orbit_digits(orbit(case), DIGITS)
+    return symfpu.refine(orbit(case), digits=DIGITS)
 
 
 def torus_of(breather):
@@ -137,7 +137,7 @@ def test_floors_with_digits_are_bounds():
         floor, E = spectrum_floor(torus), torus.average_spectrum().astype(float)
         assert (floor >= error_energies(torus, truth)).all()
         assert (floor[:5] < 10.0 ** (-2 * digits + 6) * E[:5]).all()
-    few = symfpu.periodic_orbit_digits(orbit("alpha, small"), 30)
+    few = symfpu.refine(orbit("alpha, small"), digits=30)
     floor, E = spectrum_floor(few), few.average_spectrum().astype(float)
     assert (floor >= error_energies(few, precise("alpha, small"))).all()
     assert (floor < E).all()
@@ -212,7 +212,7 @@ FORBIDDEN = {
     "refined breather": lambda: refine(breather_at_energy(Chain(33, beta=1), 3, "0.0353")),
     "series": lambda: torus_at_amplitudes(Chain(12, alpha="0.3"), {4: "0.1"}, order=6),
     "torus": lambda: refine(torus_at_amplitudes(Chain(9, alpha="0.3", beta=1), {3: "0.1", 6: "0.1"}, order=4)),
-    "digits": lambda: symfpu.periodic_orbit_digits(breather_at_energy(Chain(9, beta=1), 3, "0.1"), 30),
+    "digits": lambda: symfpu.refine(breather_at_energy(Chain(9, beta=1), 3, "0.1"), digits=30),
     "torus of digits": lambda: refine(torus_at_amplitudes(Chain(9, beta=1), {3: "0.1", 6: "0.05"}, order=3), digits=30),
     "the middle mode": lambda: symfpu.breather_at_amplitude(Chain(4, alpha="0.3"), 2, "0.1"),
     "the middle mode by its amplitude": lambda: harmonic(Chain(4, alpha="0.3"), 2),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, NoNormalModes, breather_at_amplitude, normal_modes, periodic_orbit_digits, refine, toda
+from symfpu import Chain, NoNormalModes, breather_at_amplitude, normal_modes, refine, toda
 from symfpu.normal import digits as normal_digits
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.iterative_refinement import Failure
@@ -85,7 +85,7 @@ def monodromy_by_taylor(orbit, alpha, steps):
 @pytest.mark.parametrize("amplitude", ["0.3", "1"], ids=["stable", "unstable"])
 def test_of_a_breather_they_are_the_multipliers_of_its_monodromy_to_all_digits(amplitude):
     chain = Chain(4, alpha="0.5")
-    orbit = periodic_orbit_digits(breather_at_amplitude(chain, 2, amplitude), 26, amplitude=amplitude)
+    orbit = refine(breather_at_amplitude(chain, 2, amplitude), digits=26, amplitudes={2: amplitude})
     found = normal_modes(orbit)
     assert found.stable == (amplitude == "0.3")
     monodromy = monodromy_by_taylor(orbit, "0.5", 24)
@@ -142,7 +142,7 @@ def test_doubles_near_a_collision_say_what_digits_say_or_that_they_do_not_know()
         breather = breather_at_amplitude(chain, 2, amplitude)
         words[part] = normal_modes(breather, modes=[1]).stable
         if part.endswith("11"):
-            exact = normal_modes(periodic_orbit_digits(breather, 25, amplitude=amplitude), modes=[1])
+            exact = normal_modes(refine(breather, digits=25, amplitudes={2: amplitude}), modes=[1])
             assert exact.stable is words[part]
             assert exact.undecided == ()
     assert words == {"-1e-11": True, "-1e-13": None, "1e-13": None, "1e-11": False}
@@ -184,7 +184,7 @@ def test_one_mode_without_digits_does_not_lose_the_others(monkeypatch):
             raise Failure("no more")
         return refined(modes, mode, tell)
 
-    orbit = periodic_orbit_digits(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), 20)
+    orbit = refine(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), digits=20)
     whole = normal_modes(orbit)
     assert whole.frequencies.keys() == {1, 3}
     monkeypatch.setattr(normal_digits.PreciseModes, "refined", stopped)

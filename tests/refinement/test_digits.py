@@ -94,7 +94,7 @@ def test_one_angle_is_the_sum_of_the_series():
     series = symfpu.lindstedt(orbit.chain, orbit.seeds, orbit.frequencies, 15, digits=40)
     found, summed = refine(orbit, digits=40), symfpu.solve_amplitudes(series)
     assert 0 < farthest(found, summed) < ten(-28)
-    precise = symfpu.periodic_orbit_digits(orbit, 40)
+    precise = symfpu.refine(orbit, digits=40)
     assert farthest(found, precise) < ten(-40)
 
 

@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from symfpu import Chain, lindstedt, periodic_orbit, periodic_orbit_digits, refine, resum, solve_amplitudes, unfold
+from symfpu import Chain, lindstedt, periodic_orbit, refine, resum, solve_amplitudes, unfold
 
 CHAIN = Chain(8, alpha="0.3", beta="0.1")
 PHASES = {1: 0.4, 2: -1.3}
@@ -37,7 +37,7 @@ CASES = {
     "Resummed, digits": cache(lambda: resum(digits_torus())),
     "Origin": cache(lambda: refine(series_torus()).in_doubles()),
     "HarmonicBalance": breather,
-    "IterativeRefinement, breather": cache(lambda: periodic_orbit_digits(breather(), 25)),
+    "IterativeRefinement, breather": cache(lambda: refine(breather(), digits=25)),
     "IterativeRefinement": cache(lambda: refine(digits_torus(), digits=20)),
 }
 

@@ -248,16 +248,12 @@ class TestWithFixedEnds(Asked):
         with pytest.raises(InputError, match=r"^orbit = 'a torus of 2 angles'.*normal_modes\(solution\)"):
             floquet(solution)
 
-    def test_many_digits_of_one_angle(self, solution):
-        if self.one_angle:
-            precise = symfpu.periodic_orbit_digits(solution, 20)
-            assert precise.origin.bound < SERIES_RESIDUAL
-            assert precise.frequency == solution.frequency
-            expected = precise.Q(TIMES).astype(float)
-            assert np.abs(solution.Q(TIMES).astype(float) - expected).max() < self.close
-            return
-        with pytest.raises(InputError, match=r"^orbit = 'a torus of 2 angles'.*refine\(torus, digits="):
-            symfpu.periodic_orbit_digits(solution, 20)
+    def test_many_digits(self, solution):
+        precise = refine(solution, digits=20)
+        assert precise.origin.bound < SERIES_RESIDUAL
+        assert precise.frequencies == solution.frequencies
+        expected = precise.Q(TIMES).astype(float)
+        assert np.abs(solution.Q(TIMES).astype(float) - expected).max() < self.close
 
     def test_it_is_a_guess_for_harmonic_balance(self, solution):
         if self.one_angle:
