@@ -132,7 +132,7 @@ def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         refine(orbit, digits=30, file=file, progress=until_third)
     again = refine(orbit, digits=30, file=file, progress=lambda label, fraction: heard.append(label))
-    assert [label for label in heard if label.startswith("step ")][0].startswith("step 2: residual 1e-23")
+    assert next(label for label in heard if label.startswith("step ")).startswith("step 2: residual 1e-23")
     more = refine(orbit, digits=50, file=file)
     fewer_first = refine(again, digits=50)
     assert more.origin.sweeps > again.origin.sweeps
