@@ -54,6 +54,8 @@ def test_many_digits(capsys, tmp_path):
     assert type(load(tmp_path / "orbit").torus.origin) is IterativeRefinement
     found = answer(capsys, *WORDS, "--energy", "0.01", "--digits", "20")
     assert (found["energy"], found["warnings"]) == ("0.01", [])
+    wave = answer(capsys, *WORDS, "--ends", "periodic", "--energy", "0.01", "--digits", "20")
+    assert (wave["energy"], wave["digits"], wave["ends"]) == ("0.01", 20, "periodic")
 
 
 def test_multipliers(capsys):

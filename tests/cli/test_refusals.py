@@ -42,7 +42,6 @@ REFUSED = {
     f"{POTENTIAL} spring:1": "potential = ",
     # rings
     "export RING --lang c -o exported.c": "docs/chains.md",
-    f"{BREATHER} --amplitude 0.1 --ends periodic --digits 30": "docs/chains.md",
     f"{FAMILY} --ends periodic --method appendix-a --order 4": "docs/chains.md",
     f"{PROVE} --ends periodic": "--ends",
     "sweep --order 1 --ends periodic": "--ends",
