@@ -92,7 +92,7 @@ class Case:
 
     @cached_property
     def wave(self) -> Any:
-        return symfpu.travelling_breather(self.chain, 1, amplitude=self.size)
+        return symfpu.breather_at_amplitude(self.chain, 1, self.size)
 
     @cached_property
     def orbit(self) -> Any:
@@ -312,7 +312,6 @@ NEWTON: dict[str, Door] = {
     "periodic_orbit": lambda c: symfpu.periodic_orbit(c.chain, 1, c.breather.frequency),
     "refine": lambda c: c.refined,
     "refine, digits": lambda c: symfpu.refine(c.refined, digits=25),
-    "travelling_breather": lambda c: c.wave,
     "twist": lambda c: symfpu.twist(c.periodic),
     "twist_at_rest": lambda c: symfpu.twist_at_rest(c.chain, SEEDS),
 }

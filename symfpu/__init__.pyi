@@ -57,7 +57,6 @@ from symfpu.tori.verdict import assess as assess
 from symfpu.refinement.digits import IterativeRefinement as IterativeRefinement
 from symfpu.refinement.refined_torus import Newton as Newton
 from symfpu.refinement.tori import refine as refine
-from symfpu.refinement.travelling_breather import travelling_breather as travelling_breather
 
 # theorems about tori
 from symfpu.certified.residual import ResidualProof as ResidualProof

@@ -19,10 +19,12 @@ from symfpu.breathers.balance import (
 from symfpu.breathers.equations import Balance, Condition, NoPeriodicOrbit
 from symfpu.breathers.from_rest import FromRest
 from symfpu.breathers.passage import EnergyGoal, first_passage
-from symfpu.chain.chain import Chain, require_chain
+from symfpu.breathers.waves import travelling_wave
+from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, energy_of, seed_modes
+from symfpu.refinement.refined_torus import Newton
 from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
@@ -112,12 +114,13 @@ def breather_at_energy(
     *,
     harmonic: bool = False,
     guess: Torus | None = None,
-) -> Torus[HarmonicBalance]:
+) -> Torus[HarmonicBalance | Newton]:
     """The q-breather of a seed mode with the given energy; frequency and amplitude are found.
 
-    chain, seed : the model and the mode; all quantities are dimensionless.
+    chain, seed : the model and the mode, of a ring that of a travelling wave, signed; all
+        quantities are dimensionless.
     energy : H, or with harmonic=True the harmonic energy sum E_q at t = 0, when every momentum
-        vanishes; a positive exact number.
+        vanishes, of a ring averaged over the angle; a positive exact number.
     harmonic : which of the two.
     guess : a member nearby, any solution of this seed and chain; None follows the family from
         rest, with A > 0.
@@ -128,13 +131,14 @@ def breather_at_energy(
     a wide gap has turned the family, it is followed a little further, and a UserWarning says
     that the energy is passed again.
     Raises InputError; NoBreatherAtEnergy if the family from rest ends before; with a guess
-    NoPeriodicOrbit.
+    NoPeriodicOrbit; on a ring NoTorus.
 
     >>> orbit = breather_at_energy(Chain(N=32, alpha="0.33"), 25, "0.00465")
     >>> round(float(orbit.frequency), 12), round(float(orbit.energy()), 15)
     (1.883074184707, 0.00465)
     """
-    require_chain(chain)
+    if require_any_chain(chain).periodic:
+        return travelling_wave(chain, seed, "energy", energy, guess, harmonic=harmonic)
     (seed,), target = seed_modes((seed,), chain.N), energy_of(energy)
     if not isinstance(harmonic, bool):
         advice = "say whether energy means sum E_q at t = 0"

@@ -29,12 +29,14 @@ from symfpu.breathers.equations import (
 )
 from symfpu.breathers.from_rest import FromRest
 from symfpu.breathers.passage import AmplitudeGoal, DetuningGoal, Goal, first_passage
-from symfpu.chain.chain import Chain, require_chain
+from symfpu.breathers.waves import travelling_wave
+from symfpu.chain.chain import Chain, require_any_chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
 from symfpu.numbers.arithmetic import DOUBLES
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, exact, seed_modes
+from symfpu.refinement.refined_torus import Newton
 from symfpu.tori.torus import Origin, Torus, comes_from, require_fixed_solution
 
 Floats = NDArray[np.float64]
@@ -108,25 +110,27 @@ def periodic_orbit(
     seed: int,
     frequency: Number,
     guess: ArrayLike | Torus | None = None,
-) -> Torus[HarmonicBalance]:
+) -> Torus[HarmonicBalance | Newton]:
     """The q-breather of a seed mode with the given frequency.
 
-    chain, seed : the model and the mode; all quantities are dimensionless.
+    chain, seed : the model and the mode, of a ring that of a travelling wave, signed; all
+        quantities are dimensionless.
     frequency : omega, an exact number.
     guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1), of which those that
-        the symmetry forbids are dropped; None follows the family from rest.
+        the symmetry forbids are dropped; None follows the family from rest. On a ring a wave.
 
     Newton's method on the Fourier coefficients of Eq. eqmo (harmonic balance), where the paper
     has the series of section 6.4. A frequency may have several orbits. Without a guess this is the
     first one on the family from rest, with A > 0; with a guess one near it.
     Raises InputError; without a guess NoRealAmplitude or UndeterminedAmplitudes if the lowest
-    order has no amplitude; NoPeriodicOrbit with the best iterate.
+    order has no amplitude; NoPeriodicOrbit with the best iterate, on a ring NoTorus.
 
     >>> orbit = periodic_orbit(Chain(N=32, alpha="0.33"), 25, "1.8830741847088537")
     >>> round(float(orbit.energy()), 12)
     0.004649999361
     """
-    require_chain(chain)
+    if require_any_chain(chain).periodic:
+        return travelling_wave(chain, seed, "frequency", frequency, guess)
     (seed,), omega = seed_modes((seed,), chain.N), positive_frequency(frequency)
     shift, sigma = detuning(chain, seed, omega)
     if guess is not None:
@@ -178,23 +182,25 @@ def breather_at_amplitude(
     seed: int,
     amplitude: Number,
     guess: ArrayLike | Torus | None = None,
-) -> Torus[HarmonicBalance]:
+) -> Torus[HarmonicBalance | Newton]:
     """The q-breather of a seed mode with the given amplitude; its frequency is found.
 
-    chain, seed : the model and the mode; all quantities are dimensionless.
+    chain, seed : the model and the mode, of a ring that of a travelling wave, signed; all
+        quantities are dimensionless.
     amplitude : A, the coefficient of cos(omega t) in Q_seed, an exact number, not 0.
     guess : a solution of one angle, or cosine coefficients, shape (H+1, N-1); None follows the
-        family from rest.
+        family from rest. On a ring a wave.
 
     Harmonic balance with A among the equations: the gauge of Eq. qq0, A is not Q_seed(0). An
     amplitude may have several orbits. Without a guess this is the first one on the family from
     rest, with a guess one near it.
-    Raises InputError, and NoPeriodicOrbit with the best iterate.
+    Raises InputError, and NoPeriodicOrbit with the best iterate, on a ring NoTorus.
 
     >>> round(float(breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4").frequency), 9)
     0.390491915
     """
-    require_chain(chain)
+    if require_any_chain(chain).periodic:
+        return travelling_wave(chain, seed, "amplitude", amplitude, guess)
     (seed,), A = seed_modes((seed,), chain.N), double(amplitude, "amplitude")
     if A == 0:
         raise InputError(

@@ -164,8 +164,8 @@ def monodromy(orbit: Torus, *, scheme: str = "kahan_li8") -> Floats:
 def floquet(orbit: Torus, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
-    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others, on a ring from
-        `travelling_breather` or `unfold`; dimensionless. Of a truncated series, multipliers are
+    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others, on a ring also
+        from `unfold`; dimensionless. Of a truncated series, multipliers are
         as good as the orbit is.
     scheme : of the integrator, on T + V; with one of lower order errors and tolerances are larger.
 

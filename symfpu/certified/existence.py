@@ -56,7 +56,7 @@ GIVEN = "give amplitude= or energy= instead of it"
 NO_ORBIT = "more digits of it do not help: Newton's method, periodic_orbit, finds orbits"
 HALF_A_RING = (
     "a standing breather of a ring, odd about two particles, is that of half the ring with fixed "
-    "ends; of travelling waves travelling_breather makes orbits"
+    "ends; travelling waves have breather_at_amplitude and its sisters"
 )
 SHORTER = "a shorter segment can: a half width of"
 HALVINGS = 60
@@ -236,7 +236,7 @@ def prove_existence(
 
     orbit : of one angle, of a chain with fixed ends: from `periodic_orbit`,
         `breather_at_energy` and their sisters, or of `refine`, or a series of one seed;
-        or a travelling wave of a ring, from `travelling_breather`. Its phase does not matter. All
+        or a travelling wave of a ring, from the same. Its phase does not matter. All
         is dimensionless.
     amplitude, energy : that of the orbit, an exact number: the true orbit has exactly this A or H,
         and its frequency is in an interval. Without them it has exactly the orbit's frequency.
@@ -311,7 +311,7 @@ def near(fixed: Fixed, own: Any, chain: Chain) -> Fixed:
     if abs(float(fixed.value) - float(own)) > NEAR * abs(float(own)):
         allowed = f"about that of the orbit, {float(own):.10g}"
         given = decimal(fixed.value)
-        maker = "travelling_breather" if chain.periodic else f"breather_at_{fixed.kind}"
+        maker = f"breather_at_{fixed.kind}"
         raise InputError(fixed.kind, given, allowed, f"take an orbit from {maker}")
     return fixed
 

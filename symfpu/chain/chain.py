@@ -503,7 +503,7 @@ def linear_frequencies(N: int, ends: str = "fixed") -> Floats:
 
 
 TAKES_RINGS = (
-    "leave ends= out; what takes a ring, as lindstedt or travelling_breather, "
+    "leave ends= out; what takes a ring, as lindstedt or breather_at_energy, "
     "is in docs/chains.md"
 )
 

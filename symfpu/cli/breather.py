@@ -36,7 +36,6 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
 from symfpu.refinement.tori import refine
-from symfpu.refinement.travelling_breather import travelling_breather
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import save
 from symfpu.tori.torus import Torus
@@ -109,10 +108,6 @@ def breather(
 def _found(
     chain: Chain, seed: int, omega: str | None, amplitude: str | None, energy: str | None
 ) -> Torus:
-    if chain.periodic:
-        return travelling_breather(
-            chain, seed, frequency=omega, amplitude=amplitude, energy=energy
-        )
     if omega is not None:
         return periodic_orbit(chain, seed, omega)
     if amplitude is not None:

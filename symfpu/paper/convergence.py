@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import HarmonicBalance
 from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import decimal
@@ -140,7 +139,7 @@ def breather_text(data: BreatherStudy) -> tuple[str, ...]:
     )
 
 
-def _orbit_row(name: str, orbit: Torus[HarmonicBalance]) -> list[str]:
+def _orbit_row(name: str, orbit: Torus) -> list[str]:
     row = [name, f"{float(orbit.frequency):.14f}"]
     row += [f"{orbit.amplitude:.11f}", f"{orbit.energy():.10f}"]
     harmonic = orbit.harmonic_energies().sum()
@@ -172,7 +171,7 @@ def _rounded(values: ByOrder) -> dict[str, float]:
     return {str(k): fifteen_digits(value) for k, value in values.items()}
 
 
-def _orbit_record(orbit: Torus[HarmonicBalance]) -> dict[str, str]:
+def _orbit_record(orbit: Torus) -> dict[str, str]:
     return {"frequency": decimal(orbit.frequency), "amplitude": repr(orbit.amplitude)}
 
 

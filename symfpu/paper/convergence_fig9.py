@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import HarmonicBalance, breather_at_amplitude, periodic_orbit
+from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.family import Family
@@ -49,8 +49,8 @@ class BreatherStudy:
     : of the series at the printed order.
     """
 
-    orbit: Torus[HarmonicBalance]
-    at_printed: Torus[HarmonicBalance]
+    orbit: Torus
+    at_printed: Torus
     amplitudes: dict[int, float]
     singularity: float
     spread: float
@@ -69,7 +69,7 @@ class SchemeLimit:
     divisors ends. family : on both sides of the limit.
     """
 
-    orbit: Torus[HarmonicBalance]
+    orbit: Torus
     frequencies: tuple[float, ...]
     amplitudes: tuple[float, ...]
     ends: tuple[float, ...]

@@ -19,7 +19,7 @@ TODA = Chain(8, potential=symfpu.toda("1/2"), ends="periodic")
 def travelling(s):
     """One wave through the modes N/2 and -q, or two of opposite directions with phases."""
     if s == 1:
-        return symfpu.travelling_breather(Chain(6, alpha="0.4", ends="periodic"), -2, amplitude="0.3")
+        return symfpu.breather_at_amplitude(Chain(6, alpha="0.4", ends="periodic"), -2, "0.3")
     chain = Chain(7, alpha="0.4", beta="0.2", ends="periodic")
     linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
     omega = [f"{linear[q] * 1.0003:.14f}" for q in (1, -3)]

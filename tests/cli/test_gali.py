@@ -13,7 +13,7 @@ from shlex import split
 
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, lindstedt, save, solve_amplitudes, travelling_breather
+from symfpu import Chain, breather_at_amplitude, lindstedt, save, solve_amplitudes
 from symfpu.normal.search import _Search
 from tests.cli.running import answer, refusal, run, shown
 from tests.tolerances import COMMANDED_SECONDS, FORETOLD, GALI_SLOPE, VOLUME_BY_SCHEME
@@ -151,7 +151,7 @@ def test_what_the_torus_foretells_stands_beside(capsys, tmp_path):
 
 
 def test_waves_of_a_ring_foretell(capsys, tmp_path):
-    file = save(tmp_path / "wave", travelling_breather(Chain(5, beta=1, ends="periodic"), 1, amplitude="0.4"))
+    file = save(tmp_path / "wave", breather_at_amplitude(Chain(5, beta=1, ends="periodic"), 1, "0.4"))
     words = split("--time 100 --vectors 3 --frames 1 --step 0.05 --foretold")
     assert answer(capsys, "gali", file, *words)["foretold"]["largest_difference"] < FORETOLD
 

@@ -13,7 +13,7 @@ RING = Chain(8, alpha="0.3", beta="0.5", ends="periodic")
 
 
 def wave(A):
-    return symfpu.travelling_breather(RING, 2, amplitude=A)
+    return symfpu.breather_at_amplitude(RING, 2, A)
 
 
 def test_a_travelling_wave_loses_its_stability_where_a_multiplier_leaves_the_circle():

@@ -123,6 +123,6 @@ def families():
 @case
 def of_a_ring():
     chain = Chain(9, beta=1, ends="periodic")
-    found = symfpu.travelling_breather(chain, 2, amplitude="0.4")
+    found = symfpu.breather_at_amplitude(chain, 2, "0.4")
     yield "multipliers", floquet(found).record()
     yield "normal frequencies", normal_modes(found, resonance_length=4).record()

@@ -79,7 +79,7 @@ def existence():
     yield "breather, stability", prove_stability(proof).record()
     yield "digits", prove_existence(symfpu.refine(orbit(), digits=30)).record()
     yield "interval", prove_existence(orbit(), amplitude="0.3", half_width="1e-6").record()
-    wave = symfpu.travelling_breather(Chain(16, beta=1, ends="periodic"), 2, amplitude="0.8")
+    wave = symfpu.breather_at_amplitude(Chain(16, beta=1, ends="periodic"), 2, "0.8")
     yield "wave", prove_existence(wave).record()
     high = symfpu.breather_at_amplitude(Chain(6, beta=1), 5, "1.5")
     yield "unstable", prove_stability(prove_existence(high)).record()

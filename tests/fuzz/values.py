@@ -78,7 +78,7 @@ def waves():
 
 @cache
 def wave():
-    return symfpu.travelling_breather(Chain(8, beta=1, ends="periodic"), 1, amplitude="0.1")
+    return symfpu.breather_at_amplitude(Chain(8, beta=1, ends="periodic"), 1, "0.1")
 
 
 @cache

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, Newton, ParametricResonance, normal_modes, refine, travelling_breather
+from symfpu import Chain, Newton, ParametricResonance, breather_at_amplitude, normal_modes, refine
 from symfpu.action_angle.newton_twist import equation_of
 from symfpu.normal.meeting import Crossed, Lost, Meeting
 from symfpu.normal.resonances import PARAMETRIC, SUM
@@ -54,7 +54,7 @@ def test_the_gradient_is_that_of_differences(kind):
 
 @pytest.mark.parametrize("potential", ["toda:1/2", "poly:1/3,1/4"])
 def test_the_gradient_on_a_ring_is_that_of_differences(potential):
-    solution = travelling_breather(Chain(8, potential=potential, ends="periodic"), 2, amplitude="0.4")
+    solution = breather_at_amplitude(Chain(8, potential=potential, ends="periodic"), 2, "0.4")
     assert isinstance(solution.origin, Newton)
     condition = Crossed(normal_modes(solution, modes=[1, 3]), ParametricResonance(SUM, (1, 3), (2,), 0.0))
     rows = dict(zip(map(tuple, solution.harmonics.tolist()), solution.cosines[:, 0], strict=True))

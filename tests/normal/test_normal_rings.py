@@ -31,7 +31,7 @@ WAVES = [
 @pytest.mark.parametrize(("chain", "seed", "amplitude"), WAVES, ids=repr)
 def test_of_one_wave_they_are_the_multipliers(chain, seed, amplitude):
     """The last wave, of zone boundary, is hyperbolic in the modes 3 and -3."""
-    wave = symfpu.travelling_breather(chain, seed, amplitude=amplitude)
+    wave = symfpu.breather_at_amplitude(chain, seed, amplitude)
     expected, found = symfpu.floquet(wave), normal_modes(wave)
     assert [mode.mode for mode in found.modes] == [q for q in chain.mode_numbers if q != seed]
     assert_multipliers(found, expected)
@@ -54,7 +54,7 @@ def test_todas_are_those_of_its_spectral_curve():
 def test_a_normal_frequency_is_that_of_a_wave_more_at_rest():
     """The 2-torus of 1 and -3 with a small wave -3: it misses sigma_-3 by the square of that amplitude."""
     chain = ring(9, beta=1)
-    sigma = normal_modes(symfpu.travelling_breather(chain, 1, amplitude="0.2")).frequencies[-3]
+    sigma = normal_modes(symfpu.breather_at_amplitude(chain, 1, "0.2")).frequencies[-3]
     linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
     guess = two_waves(chain, [f"{linear[q] * 1.001:.12f}" for q in (1, -3)], 6)
     missed = [float(symfpu.refine(guess, amplitudes={1: "0.2", -3: A}).omega[-3]) - sigma for A in ("0.02", "0.01")]
@@ -112,7 +112,7 @@ def test_resonances_keep_the_wave():
 
 
 def test_the_verb_has_series_of_a_ring_and_why_one_has_none(tmp_path, capsys):
-    wave = symfpu.travelling_breather(ring(6, beta=1), 1, amplitude="0.3")
+    wave = symfpu.breather_at_amplitude(ring(6, beta=1), 1, "0.3")
     assert main(["stability", str(save(tmp_path / "wave", wave)), "--series", "4", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["series"]
     assert found["2"]["closed_shift"] is None

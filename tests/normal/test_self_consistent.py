@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_amplitude, normal_modes, solve_normal_frequency, travelling_breather
+from symfpu import Chain, InputError, breather_at_amplitude, normal_modes, solve_normal_frequency
 from tests.normal.cases import torus
 from tests.tolerances import NORMAL_CONVERGED, OBSERVED_ORDER, THIRTY_DIGITS
 
@@ -59,7 +59,7 @@ def test_what_the_series_of_a_ring_misses_is_of_the_next_order(law):
     chain, order = Chain(8, ends="periodic", **law), 2
     missing = []
     for amplitude in ("0.1", "0.2"):
-        solution = travelling_breather(chain, 1, amplitude=amplitude)
+        solution = breather_at_amplitude(chain, 1, amplitude)
         exact = normal_modes(solution).frequencies
         assert set(exact) == {-3, -2, -1, 2, 3, 4}
         missing.append([abs(solve_normal_frequency(solution, q, order).sigma - w) for q, w in exact.items()])
@@ -69,7 +69,7 @@ def test_what_the_series_of_a_ring_misses_is_of_the_next_order(law):
 
 
 def test_the_series_of_a_ring_is_that_of_its_amplitudes():
-    solution = travelling_breather(Chain(8, alpha="0.3", ends="periodic"), 1, amplitude="0.2")
+    solution = breather_at_amplitude(Chain(8, alpha="0.3", ends="periodic"), 1, "0.2")
     found = solve_normal_frequency(solution, -3, 4)
     given = symfpu.normal_frequency_series(solution.chain, (1,), -3, 4, found.frequencies)
     assert given.at({1: 0.2}) == pytest.approx(found.sigma, abs=NORMAL_CONVERGED)
@@ -77,7 +77,7 @@ def test_the_series_of_a_ring_is_that_of_its_amplitudes():
 
 
 def test_a_ring_has_no_other_series_than_of_travelling_waves_in_doubles():
-    solution = travelling_breather(Chain(8, alpha="0.3", ends="periodic"), 1, amplitude="0.2")
+    solution = breather_at_amplitude(Chain(8, alpha="0.3", ends="periodic"), 1, "0.2")
     with pytest.raises(InputError, match=r"^digits"):
         solve_normal_frequency(solution, 2, 2, digits=30)
     with pytest.raises(InputError, match="standing"):

@@ -144,7 +144,7 @@ def orbit():
 
 
 def ring_wave():
-    return symfpu.travelling_breather(Chain(8, beta=1, ends="periodic"), 1, amplitude="0.1")
+    return symfpu.breather_at_amplitude(Chain(8, beta=1, ends="periodic"), 1, "0.1")
 
 
 def ring_series():

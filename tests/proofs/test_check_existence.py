@@ -9,7 +9,7 @@ from functools import cache
 import mpmath
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, breather_at_energy, prove_existence, travelling_breather
+from symfpu import Chain, breather_at_amplitude, breather_at_energy, prove_existence
 from symfpu.certified.force_series import ball, of_growth
 from symfpu.certified.packed_integers import packed
 from symfpu.chain.potentials.potential import Growth as ProverGrowth
@@ -28,7 +28,7 @@ def both():
 
 
 def wave():
-    return travelling_breather(Chain(5, alpha="0.3", beta="1/7", ends="periodic"), 1, amplitude="0.3")
+    return breather_at_amplitude(Chain(5, alpha="0.3", beta="1/7", ends="periodic"), 1, "0.3")
 
 
 MADE = {

@@ -175,7 +175,6 @@ ANSWERED = {
     "birkhoff_form",
     "lindstedt",
     "read_state",  # says first whether there is a file
-    "travelling_breather",  # of a ring, whose length is a number
     "profile_invariance",
 }
 

@@ -10,18 +10,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
-from symfpu.chain.chain import Chain, require_any_chain
+from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
 from symfpu.files.progress import Progress
 from symfpu.numbers.long_doubles import long
-from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, exact
 from symfpu.refinement.conditions import Amplitude, Condition, Energy, FrequencyShift
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus
+from symfpu.refinement.tori import refine
 from symfpu.tori.short_waves import plain_waves, shifts_by_squares
 from symfpu.tori.torus import Torus
 
@@ -31,55 +32,48 @@ SMALLEST_PART = 1 / 256  # of the way from rest, in one step
 Target = Callable[[float], Condition]  # of the part of the way that is gone
 
 
-@public
-def travelling_breather(
+def travelling_wave(
     chain: Chain,
     seed: int,
+    name: str,
+    value: Number,
+    guess: object = None,
     *,
-    frequency: Number | None = None,
-    amplitude: Number | None = None,
-    energy: Number | None = None,
-    progress: Progress | None = None,
+    harmonic: bool = False,
 ) -> Torus[Newton]:
-    """The travelling wave of one seed on a ring, with the given frequency, amplitude or energy.
+    """The wave of one seed on a ring, of a frequency, amplitude or energy, as `name` says.
 
     It is periodic: x_j(t) = f(omega t - 2 pi q j / N), and goes on by one site after 2 pi q / N
-    of its angle. Found by Newton's method, along the family from rest.
-
-    chain : with ends="periodic", of any potential. seed : q, signed; dimensionless.
-    frequency : omega. amplitude : A, not 0. energy : H. One of them, an exact number.
-    progress : called as (label, NO_FRACTION) on every step.
-
-    Ours: the breathers of section 6.4 on a ring; the phase is 0. More of them, from one nearby:
-    `refine`. Raises InputError, also for a chain with fixed
-    ends; NoRealAmplitude or UndeterminedAmplitudes if the lowest order has no amplitude of this
-    frequency; NoTorus with the best iterate.
-
-    >>> chain = Chain(N=8, potential="toda:1/2", ends="periodic")
-    >>> wave = travelling_breather(chain, 1, amplitude="0.5")
-    >>> round(float(wave.frequency), 9), wave.residual() < 1e-13
-    (0.771423596, True)
+    of its angle. Found by Newton's method, along the family from rest, or near a guess. Raises
+    InputError; NoRealAmplitude or UndeterminedAmplitudes if the lowest order has no amplitude of
+    this frequency; NoTorus with the best iterate.
     """
-    if not require_any_chain(chain).periodic:
-        allowed = "a chain with ends='periodic'"
-        advice = "fixed ends have periodic_orbit and breather_at_energy"
-        raise InputError("chain", chain, allowed, advice)
     (q,) = chain.seeds_of((seed,))
-    given = {"frequency": frequency, "amplitude": amplitude, "energy": energy}
-    [(name, value)] = _only(given).items()
-    guess, target = _SOUGHT[name](chain, q, _nonzero(name, value))
-    found = _walk(guess, target, progress)
-    return found if name != "frequency" else replace(found, frequencies=guess.frequencies)
+    number = _nonzero(name, value)
+    if guess is not None:
+        return _near(chain, q, guess, {name: number, "harmonic": harmonic})
+    if name == "frequency":
+        wave, target = _of_frequency(chain, q, number)
+        return replace(_walk(wave, target, None), frequencies=wave.frequencies)
+    if name == "amplitude":
+        return _walk(*_of_amplitude(chain, q, number), None)
+    return _walk(*_of_energy(chain, q, number, harmonic), None)
 
 
-def _only(given: dict[str, Number | None]) -> dict[str, Number]:
-    """The one argument that was given; InputError for none or more."""
-    there = {name: value for name, value in given.items() if value is not None}
-    if len(there) != 1:
-        allowed = f"exactly one of {', '.join(given)}"
-        told = ", ".join(there) or "none"
-        raise InputError("frequency, amplitude, energy", told, allowed, "say which it is")
-    return there
+def _near(chain: Chain, q: int, guess: object, wish: dict[str, Any]) -> Torus[Newton]:
+    """The wave near a guess of the same chain and seed."""
+    if not isinstance(guess, Torus) or (guess.chain, guess.seeds) != (chain, (q,)):
+        given = f"{guess!r:.60}" if isinstance(guess, Torus) else type(guess).__name__
+        allowed = f"a wave of seed {q} of the same ring"
+        raise InputError("guess", given, allowed, "take one nearby, or None")
+    frequency, amplitude = wish.get("frequency"), wish.get("amplitude")
+    return refine(
+        guess,
+        frequencies=None if frequency is None else (frequency,),
+        amplitudes=None if amplitude is None else {q: amplitude},
+        energy=wish.get("energy"),
+        harmonic=wish["harmonic"],
+    )
 
 
 def _nonzero(name: str, value: Number) -> Fraction:
@@ -124,19 +118,12 @@ def _of_frequency(chain: Chain, q: int, omega: Fraction) -> tuple[Torus, Target]
     return guess, lambda part: FrequencyShift(0, shift * np.longdouble(part) ** 2)
 
 
-def _of_energy(chain: Chain, q: int, H: Fraction) -> tuple[Torus, Target]:
+def _of_energy(chain: Chain, q: int, H: Fraction, harmonic: bool) -> tuple[Torus, Target]:
     """Of a wave of amplitude A the harmonic energy is Omega^2 A^2/2."""
     A = (2 * float(H)) ** 0.5 / _linear(chain, q)
     omega = _linear(chain, q) + _curvature(chain, q) * A**2
     guess = _plain(chain, q, _positive(omega), A)
-    return guess, lambda part: Energy(long(H) * np.longdouble(part) ** 2, harmonic=False)
-
-
-_SOUGHT = {
-    "frequency": _of_frequency,
-    "amplitude": _of_amplitude,
-    "energy": _of_energy,
-}
+    return guess, lambda part: Energy(long(H) * np.longdouble(part) ** 2, harmonic)
 
 
 def _positive(omega: float) -> Fraction:
