@@ -57,7 +57,7 @@ class Origin:
     Origin()
     """
 
-    name: ClassVar[str] = "given"
+    name: ClassVar[str] = "torus"
 
     def facts(self) -> tuple[str, ...]:
         """What the torus says of it in print, besides what all tori say."""
