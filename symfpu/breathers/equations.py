@@ -200,31 +200,36 @@ class Balance:
 
         slopes : of the orbit z. Shapes (places, n) and (n,).
         """
-        by_modes = self._slopes_by_modes(slopes)
-        n, q = self.n, self.q
+        # lazy: numba takes longer to import than all the rest
+        from symfpu.breathers.row_loops import fill_rows
+
+        table = self._slopes_of_modes(slopes)
+        n, q, linear = self.n, self.q, self.chain.frequencies()
         own = self.detuning + n**2 * z[-1]
-        diagonal = self._own_coupling(by_modes)
-        own_n, own_q = n[places][:, None], q[places][:, None]
-        rows = -(by_modes[np.abs(own_n - n), own_q, q] + by_modes[own_n + n, own_q, q])
+        rows = np.empty((len(places), len(n)))
+        fill_rows(rows, table, linear, n[places], q[places], n, q)
         rows[n[places] == 0] /= 2
         rows[np.arange(len(places)), places] += own[places]
-        return np.asarray(rows), np.asarray(own + diagonal)
+        return rows, np.asarray(own + self._own_coupling(table))
 
-    def _slopes_by_modes(self, slopes: Floats) -> Floats:
+    def _slopes_of_modes(self, slopes: Floats) -> Floats:
+        """What the slopes have of the harmonics 0 .. 2H and the modes 0 .. N; (2H+1, N+1)."""
         coefficients = self.analysis @ slopes
         coefficients[1:] /= 2
-        return self._by_modes((coefficients @ self.products)[: 2 * self.harmonics + 1])
+        return np.asarray((coefficients @ self.products)[: 2 * self.harmonics + 1])
 
-    def _own_coupling(self, by_modes: Floats) -> Floats:
+    def _own_coupling(self, table: Floats) -> Floats:
         """Of the equations by their own coefficients: what the slopes add to the divisors."""
         n, q = self.n, self.q
-        diagonal = -(by_modes[0, q, q] + by_modes[2 * n, q, q])
+        total, sign, size = (x[q, q] for x in (self._mirrored, self._sign, self._linear))
+        slopes = [size * (table[k, 0] + sign * table[k, total]) for k in (0 * n, 2 * n)]
+        diagonal = -(slopes[0] + slopes[1])
         diagonal[n == 0] /= 2
         return np.asarray(diagonal)
 
     def own_divisors(self, z: Floats) -> Floats:
         """Derivatives of the equations by their own coefficients, shape (n,)."""
-        coupling = self._own_coupling(self._slopes_by_modes(self.slopes(z)))
+        coupling = self._own_coupling(self._slopes_of_modes(self.slopes(z)))
         return np.asarray(self.detuning + self.n**2 * z[-1] + coupling)
 
     def near_resonance(self, z: Floats, factor: float) -> NDArray[np.intp]:

@@ -99,11 +99,14 @@ class NearResonances:
         far[places] = False
         self._far, self._diagonal = np.flatnonzero(far), (self._weights * diagonal)[far]
         # the border counts among the coefficients that are kept
-        self._beside = np.column_stack([rows[:, far].T, self._gradient[far]])
+        beside = np.empty((len(places) + 1, len(self._far)))
+        np.compress(far, rows, axis=1, out=beside[:-1])
+        beside[-1] = self._gradient[far]
+        self._beside = beside.T
         kept = np.zeros((len(places) + 1, len(places) + 1), order="F")
         kept[:-1, :-1] = rows[:, places]
         kept[-1, :-1] = kept[:-1, -1] = self._gradient[places]
-        kept -= self._beside.T @ (self._beside / self._diagonal[:, None])
+        kept -= (beside / self._diagonal) @ self._beside
         self._factors = Factors(kept)
         self.index = self._factors.negative + int((self._diagonal < 0).sum())
 
