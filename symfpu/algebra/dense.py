@@ -284,7 +284,7 @@ class DenseRing(ABC, Generic[Bonds]):
                 table,
                 symmetric,
                 active,
-                blocks[first::chunks],
+                np.ascontiguousarray(blocks[first::chunks]),
                 self.grading.tables,
                 self.modulus,
                 *self._reductions(slice_, sparse=sparse),

@@ -235,31 +235,30 @@ def round_columns(  # type: ignore[no-untyped-def]
     number, which is small unless an integer exceeds the range; and that of what is rounded.
 
     residues : (primes, count), overwritten. wanted : (count,). basis : a `words.Rounding` of small
-    primes. limb : 2^20. scale : a `words.Scale` of these bits. words : None, or (wanted, n) int64
-    of three limbs each, zeros, filled; rounded : the `words.Rounding` of the first primes, as many
-    as hold what is rounded. sizes : None, or (count,), filled with the distances; zero where they
-    are not wanted.
+    primes. limb : 2^20. scale : a `words.Scale` of these bits. words : (wanted, n) int64 of
+    three limbs each, zeros, filled, or (0, 0) for none; rounded : the `words.Rounding` of the
+    first primes, as many as hold what is rounded. sizes : (count,), filled with the distances,
+    zero where they are not wanted, or (0,) for none.
     """
     primes, count = len(residues), scale.lowest.shape[1]
     own, shares = np.zeros((primes, COLUMNS)), np.zeros((primes, COLUMNS))
     limbs = np.zeros((max(count, len(rounded.modulus_limbs)), COLUMNS))
     turns, distances = np.zeros(COLUMNS), np.zeros(COLUMNS)
-    if sizes is not None:
-        sizes[:] = 0.0
+    sizes[:] = 0.0
     places = np.empty(COLUMNS, dtype=np.int64)
     done, at, farthest, farther = 0, 0, 0.0, 0.0
     while at < residues.shape[1]:
         n, at = _next_columns(residues, wanted, at, places)
         near = _taken(residues, places[:n], own)
         farthest = max(farthest, _shares(own, n, basis, shares, turns, distances))
-        if sizes is not None:
+        if len(sizes):
             for b in range(n):
                 sizes[places[b]] = distances[b]
         _limbs_of(shares, turns, n, basis, limb, limbs[:count])
         _reduce_row(limbs[count - 1], n, scale.top)
         _without_lowest(own, limbs[:count], n, basis, scale)
         _put_back(own, places[:n], near, residues)
-        if words is not None:
+        if len(words):
             first = shares[: len(rounded.moduli)]
             farther = max(farther, _shares(own, n, rounded, first, turns, distances))
             own_limbs = limbs[: min(len(rounded.modulus_limbs), 3 * words.shape[1])]

@@ -136,7 +136,8 @@ class SeveralPrimesRing(ValuesRing):
             return  # it is a factor of nothing
         first = int(self.grading.first_row[degree])
         rows, conjugates = self._ordered(degree, slice(None))
-        self._kernels.to_lanes(modes, self._seed_modes, first + rows, first + conjugates)
+        values = np.ascontiguousarray(modes)
+        self._kernels.to_lanes(values, self._seed_modes, first + rows, first + conjugates)
 
     def _ordered(self, degree: int, some: slice) -> tuple[Ints, Ints]:
         """Rows of some monomials and of their conjugates, from the first of the degree on."""
@@ -225,7 +226,8 @@ class SeveralPrimesRing(ValuesRing):
         """Register corrections, (primes, diagonal, s)."""
         self._correction_degrees.append(degree)
         rows = self._diagonal_rows(degree)
-        self._kernels.to_lanes(corrections, self._corrections, rows, rows)
+        values = np.ascontiguousarray(corrections)
+        self._kernels.to_lanes(values, self._corrections, rows, rows)
         self._active[rows] = True
 
     def corrected_residues(self, degree: int) -> Floats:

@@ -27,6 +27,10 @@ LARGEST_DIVISOR = 2**42
 LEAST_TOP = 8  # bits of the highest of the limbs that are rounded away
 EXACT = 2.0**52  # integers below it are exact in doubles
 WORD_BITS = LIMB_BITS * LIMBS_PER_WORD
+NO_WORDS, NO_SIZES = (
+    np.zeros((0, 0), dtype=np.int64),
+    np.zeros(0),
+)  # of one type for the loops
 SIZE_ERROR = 2.0**-40  # of a sum of shares, one a prime, modulo one
 
 
@@ -215,7 +219,8 @@ class ResidueBasis:
         gives them. sizes : (count,), filled with the moduli of the integers over the product of
         all primes, off by less than SIZE_ERROR. Raises OverflowError as `limbs` does.
         """
-        self._round(residues, wanted, bits, self, None, sizes)
+        distances = NO_SIZES if sizes is None else sizes
+        self._round(residues, wanted, bits, self, NO_WORDS, distances)
 
     def rounded_words(
         self, residues: Floats, wanted: NDArray[np.bool_], bits: int, first: ResidueBasis
@@ -226,7 +231,7 @@ class ResidueBasis:
         """
         count = int(np.count_nonzero(wanted))
         words = np.zeros((count, first.longest_word), dtype=np.int64)
-        self._round(residues, wanted, bits, first, words, None)
+        self._round(residues, wanted, bits, first, words, NO_SIZES)
         used = first.longest_word
         while used > 1 and not words[:, used - 1].any():
             used -= 1
@@ -238,8 +243,8 @@ class ResidueBasis:
         wanted: NDArray[np.bool_],
         bits: int,
         first: ResidueBasis,
-        words: Words | None,
-        sizes: Floats | None,
+        words: Words,
+        sizes: Floats,
     ) -> None:
         scale = self._scale(bits)
         farthest, farther = self._loops.round_columns(
