@@ -66,3 +66,22 @@ def test_residuals_are_by_mode_and_on_the_grid(breather):
     assert breather.residual(32) == pytest.approx(residuals.max() / max(force), rel=RESIDUAL_ROUNDING)
     with pytest.raises(InputError, match="points"):
         breather.residual(0)
+
+
+def test_cut_at_an_order_it_is_the_torus_of_that_order(torus):
+    for order in (0, 3, 6):
+        cut = torus.origin.cut_at(order).torus(torus.phases)
+        expected = solve_amplitudes(torus.origin.series, order=order, phases=PHASES)
+        assert (cut.origin.order, cut.amplitudes) == (order, expected.amplitudes)
+        assert np.array_equal(cut.harmonics, expected.harmonics)
+        assert np.array_equal(cut.cosines, expected.cosines)
+    with pytest.raises(InputError, match=r"^order = 7.*0\.\.6"):
+        torus.origin.cut_at(7)
+
+
+def test_a_doubt_keeps_what_is_known(torus):
+    residual = torus.residual()
+    doubted = torus.doubted(["a reason"])
+    assert (doubted.warnings, torus.warnings, doubted.residual()) == (("a reason",), (), residual)
+    assert repr(doubted).endswith("; a reason)")
+    assert doubted.origin is torus.origin
