@@ -82,6 +82,7 @@ def test_cut_at_an_order_it_is_the_torus_of_that_order(torus):
 def test_a_doubt_keeps_what_is_known(torus):
     residual = torus.residual()
     doubted = torus.doubted(["a reason"])
-    assert (doubted.warnings, torus.warnings, doubted.residual()) == (("a reason",), (), residual)
+    assert (doubted.warnings, doubted.residual()) == (("a reason",), residual)
+    assert torus.warnings != doubted.warnings
     assert repr(doubted).endswith("; a reason)")
     assert doubted.origin is torus.origin
