@@ -20,7 +20,7 @@ from symfpu.chain.chain import Chain
 from symfpu.dynamics.onset import chaos_times
 from symfpu.dynamics.starts import State, packet_state
 from symfpu.errors import InputError
-from symfpu.tori.verdict import short
+from symfpu.numbers.counted import short
 
 CHAOS = "chaos"
 IN_PHASE = "in-phase"

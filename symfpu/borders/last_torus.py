@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from symfpu.numbers.counted import short
 from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.resonances import NearResonance
 from symfpu.refinement.tori import NoTorus
 from symfpu.tori.torus import Torus
-from symfpu.tori.verdict import short
 
 SHARPER = 1e-2  # of the tolerance to which a torus was found, to confirm it
 Json = dict[str, Any]

@@ -19,13 +19,13 @@ from symfpu.breathers.from_rest import FromRest
 from symfpu.breathers.passage import AmplitudeGoal, EnergyGoal, first_passage
 from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
+from symfpu.numbers.counted import short
 from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.resonances import NearResonance
 from symfpu.refinement.search import ALL_THAT_FIT
 from symfpu.refinement.tori import NoTorus, ended_early, refine
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
-from symfpu.tori.verdict import short
 
 FACTOR = 1.25  # of the place, at most, from one torus to the next, if a loss is looked for
 WIDE_FACTOR = 1.6  # and if none is

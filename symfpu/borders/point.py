@@ -11,12 +11,13 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
+from symfpu.numbers.counted import short
 from symfpu.tori.amplitudes import steps_of_frequencies
 from symfpu.tori.at_energy import torus_at_energy
 from symfpu.tori.frequencies import torus_at_amplitudes
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
-from symfpu.tori.verdict import RATIO_ORDERS, Assessment, assess, short
+from symfpu.tori.verdict import RATIO_ORDERS, Assessment, assess
 
 DIGITS = 8  # of the places at which tori are looked for
 RATIO, SUMS, POLES = "ratio", "sums", "poles"

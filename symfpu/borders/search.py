@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from symfpu.borders.point import Point, Ray, point_at, singularity
+from symfpu.numbers.counted import short
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
-from symfpu.tori.verdict import short
 
 FIRST_PLACE, LOWERING, LOWERINGS = 1e-6, 1e-2, 6  # energies at which a ray is begun
 LARGEST_PLACE = 1e6  # no border is looked for beyond

@@ -45,12 +45,13 @@ from symfpu.reports.family import event_record, family_record, member_record
 from symfpu.reports.head import headed
 from symfpu.reports.normal import normal_event_record, normal_family_record, normal_record
 from symfpu.reports.proofs import proof_record, sweep_record
-from symfpu.reports.series import series_record
+from symfpu.reports.series import assessment_record, series_record
 from symfpu.reports.solution import floquet_record, solution_record
 from symfpu.reports.stability_proof import stability_record
 from symfpu.reports.tables import fifteen_digits
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.torus import Torus
+from symfpu.tori.verdict import Assessment
 
 Json = dict[str, Any]
 
@@ -167,6 +168,7 @@ KINDS: tuple[tuple[type, Callable[[Any], Json]], ...] = (
     (ResidualProof, residual_proof_record),
     (StayProof, stay_record),
     (LindstedtSeries, series_record),
+    (Assessment, assessment_record),
     (Family, family_record),
     (Member, member_record),
     (Event, event_record),

@@ -10,14 +10,13 @@ convergence by ratio and by Pade poles, and the resummed torus.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu import __version__
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
@@ -25,7 +24,7 @@ from symfpu.frames.attributes import Attributes, attributes
 from symfpu.frames.table import Column, Table, joined
 from symfpu.frames.tabled import Tabled
 from symfpu.notebook import Shown
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, text
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers
 from symfpu.numbers.mpfr import at_the_face, inside
 from symfpu.numbers.public import public
 from symfpu.series.divisors import divisor
@@ -77,18 +76,6 @@ class LargestTerm:
         harmonic = ",".join(map(str, self.harmonic))
         place = f"mode {self.mode}, harmonic ({harmonic})"
         return f"{self.size:.2g} at {place}, divisor {self.divisor:.2g}"
-
-    def record(self) -> dict[str, Any]:
-        """The term as JSON can hold it."""
-        size = short(self.size)
-        divisor_size = short(self.divisor)
-        return {
-            "order": self.order,
-            "size": size,
-            "mode": self.mode,
-            "harmonic": list(self.harmonic),
-            "divisor": divisor_size,
-        }
 
 
 @public
@@ -159,49 +146,6 @@ class Assessment(Shown, Tabled):
     def __repr__(self) -> str:
         return f"Assessment({self.verdict}: {'; '.join(self.reasons)})"
 
-    def record(self) -> dict[str, Any]:
-        """All of it as JSON can hold it; numbers of more than 15 digits as strings."""
-        certificate = self.certificate
-        certified = None if certificate is None else certificate.certified
-        return {
-            "kind": type(self).__name__,
-            "symfpu_version": __version__,
-            **({} if self.chain is None else self.chain.typed),
-            "verdict": self.verdict,
-            "reasons": list(self.reasons),
-            "best_order": self.best_order,
-            "order": self.order,
-            "frequency_order": self.frequency_order,
-            "root_uncertainty": short(self.root_uncertainty),
-            **self._amplitudes_record(),
-            **self._terms_record(),
-            "growth": short(self.growth),
-            "radius_by_ratio": short(self.radius),
-            "radius_by_poles": short(self.pole_radius),
-            "residuals": _short_list(self.residuals),
-            "energy_errors": _short_list(self.energy_errors),
-            "resummed_residual": short(self.resummed_residual),
-            "certified": certified,
-        }
-
-    def _amplitudes_record(self) -> dict[str, Any]:
-        digits = 17
-        amplitudes = {}
-        for K, values in self.amplitudes.items():
-            amplitudes[str(K)] = [text(a, digits) for a in values]
-        differences = {}
-        for K, changes in self.differences.items():
-            differences[str(K)] = _short_list(changes)
-        return {"amplitudes_by_frequency_order": amplitudes, "differences": differences}
-
-    def _terms_record(self) -> dict[str, Any]:
-        moduli, cosines = {}, {}
-        for q, (S_1, S_2) in self.sums.items():
-            moduli[str(q)] = _short_list(S_1)
-            cosines[str(q)] = _short_list(S_2)
-        largest = [term.record() for term in self.terms]
-        return {"S_1": moduli, "S_2": cosines, "largest_terms": largest}
-
     def _table(self) -> Table:
         """One row for each order: residual, energy error, largest term, sums, amplitudes."""
         orders = range(self.order + 1)
@@ -239,15 +183,6 @@ class Assessment(Shown, Tabled):
             radius_by_poles=self.pole_radius,
             resummed_residual=self.resummed_residual,
         )
-
-
-def short(value: float) -> float | None:
-    """A measure for JSON, to six digits; None where it is infinite or not a number."""
-    return float(f"{value:.6g}") if math.isfinite(value) else None
-
-
-def _short_list(values: Iterable[float]) -> list[float | None]:
-    return [short(x) for x in values]
 
 
 @public
