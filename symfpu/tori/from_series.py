@@ -17,7 +17,7 @@ from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import Numbers, text, with_digits
 from symfpu.numbers.mpfr import at_the_face, inside
 from symfpu.numbers.typed import order_of
-from symfpu.series.series import LindstedtSeries
+from symfpu.series.series import LindstedtSeries, require_any_series
 from symfpu.tori.columns import columns_of
 from symfpu.tori.torus import Origin, Torus, comes_from
 
@@ -74,6 +74,8 @@ class FromSeries(Origin):
         |omega_q - truncated series|, dimensionless.
     certificate : whether the root is proved to exist (series with digits only).
 
+    Raises InputError for what is no series with frequencies.
+
     >>> from symfpu import Chain, lindstedt, solve_amplitudes
     >>> solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3903",), 8)).origin
     FromSeries(frequency order 8, order 8)
@@ -90,7 +92,11 @@ class FromSeries(Origin):
     certificate: RootCertificate | None = None
 
     def __post_init__(self) -> None:
-        digits = self.series.digits
+        digits = require_any_series(self.series).digits
+        if self.series.frequencies is None:
+            allowed = "a series with chosen frequencies"
+            advice = "give frequencies= to lindstedt"
+            raise InputError("series", "universal form", allowed, advice)
         if digits is not None:
             for name in ("amplitudes", "history"):
                 shown = with_digits(getattr(self, name), digits)

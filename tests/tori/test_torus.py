@@ -79,6 +79,12 @@ def test_cut_at_an_order_it_is_the_torus_of_that_order(torus):
         torus.origin.cut_at(7)
 
 
+@pytest.mark.parametrize("series", ["a series", lindstedt(Chain(8, alpha=1), (1,), order=2)])
+def test_what_is_no_series_with_frequencies_is_refused(series):
+    with pytest.raises(InputError, match=r"^series = "):
+        FromSeries(series, (0.1,), 0, 2)
+
+
 def test_a_doubt_keeps_what_is_known(torus):
     residual = torus.residual()
     doubted = torus.doubted(["a reason"])
