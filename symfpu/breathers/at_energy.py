@@ -137,12 +137,12 @@ def breather_at_energy(
     >>> round(float(orbit.frequency), 12), round(float(orbit.energy()), 15)
     (1.883074184707, 0.00465)
     """
-    if require_any_chain(chain).periodic:
-        return travelling_wave(chain, seed, "energy", energy, guess, harmonic=harmonic)
-    (seed,), target = seed_modes((seed,), chain.N), energy_of(energy)
     if not isinstance(harmonic, bool):
         advice = "say whether energy means sum E_q at t = 0"
         raise InputError("harmonic", harmonic, "True or False", advice)
+    if require_any_chain(chain).periodic:
+        return travelling_wave(chain, seed, "energy", energy, guess, harmonic=harmonic)
+    (seed,), target = seed_modes((seed,), chain.N), energy_of(energy)
     goal = float(target)
     if guess is not None:
         member = _member(guess, chain, seed)

@@ -13,6 +13,7 @@ from tests.tolerances import (
     ONE_MODE_FREQUENCY,
     RELATIVE_SHIFT,
 )
+from tests.tori.test_ring_torus import ring
 
 ALPHA = Chain(N=32, alpha="0.33")
 
@@ -114,8 +115,9 @@ def test_energies_that_select_no_orbit_are_refused(energy):
 def test_other_bad_input_is_refused():
     with pytest.raises(InputError, match=r"^seeds = "):
         breather_at_energy(ALPHA, 0, "0.1")
-    with pytest.raises(InputError, match=r"^harmonic = "):
-        breather_at_energy(ALPHA, 1, "0.1", harmonic="yes")
+    for chain in (ALPHA, ring(8, alpha="0.25")):
+        with pytest.raises(InputError, match=r"^harmonic = "):
+            breather_at_energy(chain, 1, "0.1", harmonic="yes")
 
 
 def test_solutions_of_negative_squared_frequency_are_no_orbits():
