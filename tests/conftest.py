@@ -1,6 +1,7 @@
 """Settings of the whole suite: hypothesis draws the same examples every time and leaves no files behind; an executor."""
 
 import math
+import signal
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
@@ -8,6 +9,11 @@ from hypothesis import settings
 
 settings.register_profile("suite", max_examples=40, deadline=None, derandomize=True, database=None)
 settings.load_profile("suite")
+
+
+# a run in the background of a script ignores the interrupt key, and its children with it; tests press it
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(autouse=True)

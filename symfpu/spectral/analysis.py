@@ -486,7 +486,6 @@ def _identified(
     seeds: list[int] = []
     strengths: list[float] = []
     names: dict[int, tuple[int, ...]] = {}
-    apart = 0.0
     order = sorted(
         range(len(lines)), key=lambda i: -lines[i].frequency * lines[i].amplitude
     )
@@ -499,7 +498,6 @@ def _identified(
         nu = basis.combination(line.frequency, spread)
         free = len(seeds) < chain.N - 1
         if nu is None and free and basis.is_independent(line.frequency, spread):
-            apart = max(apart, basis.near(line.frequency, UNRESOLVED * 2 * math.pi / T))
             strengths.append(line.frequency * line.amplitude)
             basis.add(line.frequency, spread, strengths[-1] / strengths[0])
             errors.append(line.error)
@@ -508,6 +506,7 @@ def _identified(
         if nu is not None:
             names[i] = nu
     omega = np.array(basis.frequencies)
+    apart = basis.meeting(UNRESOLVED * 2 * math.pi / T)
     named = [
         _named(replace(line, error=max(line.error, apart)), names.get(i), omega)
         for i, line in enumerate(lines)

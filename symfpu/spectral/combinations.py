@@ -122,17 +122,20 @@ class Basis:
         nu, accidents = self._met(frequency, error)
         return nu if accidents <= CHANCE else None
 
-    def near(self, frequency: float, reach: float) -> float:
-        """The distance of a light combination within reach, if that is no accident; else 0."""
+    def meeting(self, reach: float) -> float:
+        """The distance of two light combinations within reach, if that is no accident; else 0.
+
+        Of the lightest two: they are apart by a third, which is near zero.
+        """
         known = self.known
         light = int(np.searchsorted(known.sizes, LIGHT, side="right"))
-        turns = (known.sums[1:light] - frequency) / self.rate
+        turns = known.sums[1:light] / self.rate
         away = self.rate * np.abs(turns - np.rint(turns))
         hits = np.flatnonzero(away <= reach)
         if not len(hits):
             return 0.0
         lighter = int(np.searchsorted(known.sizes, known.sizes[1 + hits[0]], side="right"))
-        accidents = 2 * reach * (lighter - 1) / self.rate
+        accidents = reach * (lighter - 1) / self.rate  # nu and -nu are one
         return float(away[hits[0]]) if accidents <= DOUBTFUL else 0.0
 
     def is_independent(self, frequency: float, error: float) -> bool:

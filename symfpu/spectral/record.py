@@ -131,6 +131,8 @@ class Record:
             frequency += step
             if abs(step) <= self._still(frequency):
                 break
+        if self.real and abs(frequency) <= self._still(frequency):
+            frequency = 0.0
         value = (weighted * self.wave(-frequency)).sum()
         return Exponential(frequency, complex(value))
 
