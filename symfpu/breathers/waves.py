@@ -23,7 +23,7 @@ from symfpu.refinement.conditions import Amplitude, Condition, Energy, Frequency
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus
 from symfpu.refinement.tori import refine
-from symfpu.tori.short_waves import plain_waves, shifts_by_squares
+from symfpu.tori.short_series import plain_waves, shifts_by_squares
 from symfpu.tori.torus import Torus
 
 LEAST_FREQUENCY = 1e-9  # of a guess

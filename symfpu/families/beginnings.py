@@ -6,24 +6,18 @@ import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-import mpmath
 import numpy as np
 
 from symfpu.breathers.from_rest import FIRST_SHIFT, FIRST_STRETCH
 from symfpu.chain.chain import Chain
-from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import SymfpuError
 from symfpu.families.extrapolation import coefficients_at
 from symfpu.families.members import Level, Member, linear_by_mode
 from symfpu.files.progress import Progress
-from symfpu.numbers.arithmetic import text
-from symfpu.numbers.long_doubles import DIGITS
 from symfpu.refinement.conditions import Amplitude, Condition, ratio_conditions
 from symfpu.refinement.refined_torus import TOLERANCE, Newton, NoTorus, refined_torus
 from symfpu.refinement.tori import refine
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.from_series import FromSeries
-from symfpu.tori.short_waves import shifts_by_squares, short_waves
+from symfpu.tori.short_series import shifts_by_squares, short_series
 from symfpu.tori.torus import Torus
 
 GUESS_ORDER = 2  # of the series that begins a family
@@ -45,7 +39,7 @@ def first_torus(
     energy_ratio : of the averaged mode energies, by seed; then only the amplitude of the first seed
     is as given.
     """
-    guess = short_series(chain, amplitudes)
+    guess = short_series(chain, amplitudes, GUESS_ORDER)
     if energy_ratio is None:
         return refine(guess, amplitudes=amplitudes, tolerance=tolerance, progress=progress)
     first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
@@ -67,7 +61,7 @@ def first_at(
     ratio : the s - 1 conditions beside the energy. Raises NoTorus, also where the amplitudes found
     are far from those of the series: a torus of another family may have the energy.
     """
-    guess = short_series(chain, amplitudes)
+    guess = short_series(chain, amplitudes, GUESS_ORDER)
     conditions = [level.condition, *ratio]
     found = refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
     astray = max(abs(found.amplitudes[q] / a - 1) for q, a in amplitudes.items())
@@ -90,10 +84,7 @@ def first_energy(chain: Chain, amplitudes: Mapping[int, float], goal: Fraction) 
     """
     linear = linear_by_mode(chain, amplitudes)
     sizes = np.array(list(amplitudes.values()))
-    if chain.periodic:
-        shifts = shifts_by_squares(chain, tuple(amplitudes)) @ sizes**2
-    else:
-        shifts = np.array(list(frequency_shift(chain, amplitudes).values()))
+    shifts = shifts_by_squares(chain, tuple(amplitudes)) @ sizes**2
     rates = np.array(list(linear.values()))
     relative = float(np.max(np.abs(shifts) / rates))
     stretch = math.sqrt(2 / chain.N) * float(rates @ np.abs(sizes))
@@ -105,18 +96,6 @@ def first_energy(chain: Chain, amplitudes: Mapping[int, float], goal: Fraction) 
     while first >= goal:
         first *= LOWERED
     return first
-
-
-def short_series(chain: Chain, amplitudes: Mapping[int, float]) -> Torus[FromSeries]:
-    """The series of lowest orders about the frequencies that these amplitudes shift."""
-    if chain.periodic:
-        return short_waves(chain, amplitudes, GUESS_ORDER)
-    shifts = frequency_shift(chain, amplitudes)
-    with mpmath.workdps(DIGITS):
-        shifted = [chain.linear_frequency(q) + mpmath.mpf(shifts[q]) for q in amplitudes]
-        omega = [Fraction(text(w, 25)) for w in shifted]
-    series = lindstedt(chain, tuple(amplitudes), omega, GUESS_ORDER)
-    return FromSeries(series, tuple(amplitudes.values()), 0, GUESS_ORDER).torus()
 
 
 def returned(members: Sequence[Member], *, tolerance: float) -> bool:

@@ -19,7 +19,7 @@ from symfpu.families.appendix_a import (
     member_at,
     members_between,
 )
-from symfpu.families.beginnings import first_at, returned, short_series
+from symfpu.families.beginnings import GUESS_ORDER, first_at, returned
 from symfpu.families.breather_walk import BreatherWalk
 from symfpu.families.continuation import Way
 from symfpu.families.events import continued, events_between
@@ -34,6 +34,7 @@ from symfpu.numbers.typed import Number, integer
 from symfpu.refinement.conditions import ratio_conditions
 from symfpu.refinement.refined_torus import TOLERANCE, Newton, NoTorus
 from symfpu.tori.from_series import FromSeries
+from symfpu.tori.short_series import short_series
 from symfpu.tori.torus import Torus, comes_from
 
 SECOND_RATIO = 1.1  # ratio of the amplitudes of the second member and the first
@@ -238,7 +239,7 @@ def _walk(plan: Plan, progress: Progress) -> BreatherWalk:
     try:
         return BreatherWalk(plan, progress)
     except NoPeriodicOrbit as failure:
-        guess = short_series(plan.chain, plan.start)
+        guess = short_series(plan.chain, plan.start, GUESS_ORDER)
         assert comes_from(guess, FromSeries)
         raise NoTorus(str(failure), guess, guess.residual()) from failure
 

@@ -18,7 +18,6 @@ import mpmath
 import numpy as np
 
 from symfpu.chain.chain import Chain, require_chain
-from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import InputError, SymfpuError, UndeterminedAmplitudes
 from symfpu.numbers.arithmetic import (
     DOUBLES,
@@ -44,6 +43,7 @@ from symfpu.tori.amplitudes import (
 from symfpu.tori.broyden import Found, NotFound, solve, walk
 from symfpu.tori.from_series import FromSeries, require_series_torus
 from symfpu.tori.root_certificate import certify_root
+from symfpu.tori.short_series import shifts_by_squares
 from symfpu.tori.torus import Torus
 
 LARGEST_NUMBER = 10**60  # size of an amplitude or a weight
@@ -142,12 +142,7 @@ class Frequencies:
         self.digits = digits
         self.modes = np.array(seeds) - 1
         self.linear = chain.frequencies()[self.modes]
-        columns = []
-        for n in seeds:
-            unit_square = {q: float(q == n) for q in seeds}
-            columns.append(frequency_shift(chain, unit_square))
-        by_seed_and_square = np.array([[column[q] for column in columns] for q in seeds])
-        slopes = by_seed_and_square / self.linear[:, None]
+        slopes = shifts_by_squares(chain, seeds) / self.linear[:, None]
         s = len(seeds)
         self.rest = Point(np.zeros(s), np.zeros(s), slopes, -np.eye(s))
 

@@ -10,7 +10,7 @@ from symfpu import Chain, InputError, actions, breather_at_amplitude, family, fl
 from symfpu.families.beginnings import returned
 from symfpu.families.normal_events import STABILITY
 from symfpu.refinement.tori import shifts_of
-from symfpu.tori.short_waves import shifts_by_squares
+from symfpu.tori.short_series import shifts_by_squares
 from tests import tolerances
 from tests.families.test_folder import alike
 from tests.tolerances import EVENT_BY_DIGITS, FIXED_ENERGY, LINEAR_LIMIT, NEWTON_TWIST, SAME_FREQUENCY, SLOPE
