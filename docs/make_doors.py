@@ -57,7 +57,13 @@ class Case:
 
     @cached_property
     def torus(self) -> Any:
-        return symfpu.torus_at_amplitudes(self.chain, self.amplitudes, order=4)
+        return symfpu.torus(
+            self.chain,
+            tuple(self.amplitudes),
+            amplitudes=self.amplitudes,
+            method="series",
+            order=4,
+        )
 
     @cached_property
     def series(self) -> Any:
@@ -83,7 +89,7 @@ class Case:
 
     @cached_property
     def breather(self) -> Any:
-        return symfpu.breather_at_amplitude(self.chain, 1, self.size)
+        return symfpu.torus(self.chain, (1,), amplitudes={1: self.size})
 
     @property
     def periodic(self) -> Any:
@@ -92,7 +98,7 @@ class Case:
 
     @cached_property
     def wave(self) -> Any:
-        return symfpu.breather_at_amplitude(self.chain, 1, self.size)
+        return symfpu.torus(self.chain, (1,), amplitudes={1: self.size})
 
     @cached_property
     def orbit(self) -> Any:
@@ -276,9 +282,8 @@ SERIES: dict[str, Door] = {
     "solve_amplitudes, digits=30": lambda c: symfpu.solve_amplitudes(
         c.lindstedt((1,), c.breather.frequencies, 4, digits=30)
     ),
-    "torus_at_amplitudes": lambda c: c.torus,
-    "torus_at_energy": lambda c: symfpu.torus_at_energy(
-        c.chain, SEEDS, c.size**2 / 20, harmonic=False, order=4
+    "torus, method=series": lambda c: symfpu.torus(
+        c.chain, SEEDS, energy=c.size**2 / 20, method="series", order=4
     ),
     "unfold": lambda c: symfpu.unfold(c.of(lambda: c.torus)),
 }
@@ -286,8 +291,8 @@ NEWTON: dict[str, Door] = {
     "actions": lambda c: symfpu.actions(c.solution),
     "appendix_a": lambda c: appendix_a(c.chain, SEEDS, c.amplitudes, 3, members=2),
     "atlas": lambda c: c.atlas(),
-    "breather_at_amplitude": lambda c: c.breather,
-    "breather_at_energy": lambda c: symfpu.breather_at_energy(c.chain, 1, c.size**2 / 20),
+    "torus": lambda c: c.breather,
+    "torus of an energy": lambda c: symfpu.torus(c.chain, SEEDS, energy=c.size**2 / 20),
     "family": lambda c: c.family,
     "family, folder=": lambda c: symfpu.family(
         c.chain, (1,), 1e-2 * c.size**2, members=2, folder=c.folder / "family"
@@ -309,7 +314,6 @@ NEWTON: dict[str, Door] = {
     "member_at_frequency": lambda c: symfpu.member_at_frequency(
         c.family, 1, c.family.members[1].torus.frequency
     ),
-    "periodic_orbit": lambda c: symfpu.periodic_orbit(c.chain, 1, c.breather.frequency),
     "refine": lambda c: c.refined,
     "refine, digits": lambda c: symfpu.refine(c.refined, digits=25),
     "twist": lambda c: symfpu.twist(c.periodic),

@@ -7,14 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from symfpu import (
-    Chain,
-    alignment_indices,
-    foretold_indices,
-    normal_modes,
-    refine,
-    torus_at_amplitudes,
-)
+import symfpu
+from symfpu import Chain, alignment_indices, foretold_indices, normal_modes, refine
 
 PICTURE = Path(__file__).with_name("foretold.png")
 VECTORS = 6
@@ -29,7 +23,15 @@ def main() -> None:
     mpl.use("Agg")
     from symfpu import plots
 
-    torus = refine(torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.2"}, 6))
+    torus = refine(
+        symfpu.torus(
+            Chain(8, alpha="0.3"),
+            (1, 2),
+            amplitudes={1: "0.3", 2: "0.2"},
+            method="series",
+            order=6,
+        )
+    )
     foretold = foretold_indices(
         torus, LAST_TIME, vectors=VECTORS, normal=normal_modes(torus)
     )

@@ -33,12 +33,15 @@ from symfpu.series.sample import SampledSeries as SampledSeries
 from symfpu.series.sample import sample_series as sample_series
 from symfpu.series.series import LindstedtSeries as LindstedtSeries
 
+# tori
+from symfpu.solutions.torus import torus as torus
+from symfpu.tori.energy import Energy as Energy
+from symfpu.tori.orders import Orders as Orders
+
 # tori from series
 from symfpu.tori.amplitudes import AmplitudeHistory as AmplitudeHistory
 from symfpu.tori.amplitudes import amplitude_history as amplitude_history
 from symfpu.tori.amplitudes import solve_amplitudes as solve_amplitudes
-from symfpu.tori.at_energy import torus_at_energy as torus_at_energy
-from symfpu.tori.frequencies import torus_at_amplitudes as torus_at_amplitudes
 from symfpu.tori.resummation import PadeSum as PadeSum
 from symfpu.tori.resummation import Resummed as Resummed
 from symfpu.tori.resummation import pade_amplitudes as pade_amplitudes
@@ -65,10 +68,7 @@ from symfpu.certified.stay import StayProof as StayProof
 from symfpu.certified.stay import prove_stay as prove_stay
 
 # breathers
-from symfpu.breathers.at_energy import breather_at_energy as breather_at_energy
 from symfpu.breathers.balance import HarmonicBalance as HarmonicBalance
-from symfpu.breathers.balance import breather_at_amplitude as breather_at_amplitude
-from symfpu.breathers.balance import periodic_orbit as periodic_orbit
 from symfpu.certified.existence import ExistenceProof as ExistenceProof
 from symfpu.certified.existence import prove_existence as prove_existence
 from symfpu.breathers.floquet import Floquet as Floquet

@@ -42,8 +42,8 @@ def refined():
 
 @cache
 def orbit():
-    frequency = symfpu.breather_at_amplitude(SINGLE, 3, "0.3").frequency
-    return symfpu.periodic_orbit(SINGLE, 3, frequency)
+    frequency = symfpu.torus(SINGLE, (3,), amplitudes={3: "0.3"}).frequency
+    return symfpu.torus(SINGLE, (3,), frequencies=(frequency,))
 
 
 @cache
@@ -54,7 +54,7 @@ def stability():
 @cache
 def hyperbolic_in_digits():
     """Complex and real numbers: sigma_1 is hyperbolic, sigma_3 elliptic."""
-    breather = symfpu.breather_at_amplitude(Chain(4, alpha="0.5"), 2, "1")
+    breather = symfpu.torus(Chain(4, alpha="0.5"), (2,), amplitudes={2: "1"})
     return symfpu.normal_modes(symfpu.refine(breather, digits=20, amplitudes={2: "1"}))
 
 
@@ -72,7 +72,7 @@ def normal_breathers():
 def normal_line():
     """Two stable tori and an unstable one, and where the first turns into the last, by hand."""
     chain = Chain(N=4, alpha="0.5")
-    found = tuple(symfpu.normal_modes(symfpu.breather_at_amplitude(chain, 2, A)) for A in ("0.5", "0.75", "1"))
+    found = tuple(symfpu.normal_modes(symfpu.torus(chain, (2,), amplitudes={2: A})) for A in ("0.5", "0.75", "1"))
     met = symfpu.ParametricResonance("parametric", (1,), (1,), 0.0)
     onset = symfpu.NormalEvent("stability", met, 1, 0.5412, {2: 0.7706}, 0.9, begins=True)
     crossed = symfpu.NormalEvent("resonance", met, 0, 0.2, {2: 0.6}, 0.5)
@@ -290,6 +290,8 @@ CASES = {
     "HarmonicBalance": Case(lambda: orbit().origin, lambda x: (x.iterations, x.sigma)),
     "IterativeRefinement": Case(lambda: symfpu.refine(orbit(), digits=20).origin, lambda x: (x.bound, x.error, x.sweeps)),
     "Newton": Case(lambda: refined().origin, lambda x: (x.steps, x.near_resonances)),
+    "Energy": Case(lambda: symfpu.Energy("0.01", energy_ratio={1: 2, 3: 1}), repr),
+    "Orders": Case(lambda: symfpu.Orders(8, frequency_order=6), repr),
     "Origin": Case(lambda: torus().in_doubles().origin, repr),
     "Resummed": Case(lambda: symfpu.resum(torus(30)).origin, lambda x: x.disagreement),
     "TwistAtRest": Case(lambda: symfpu.twist_at_rest(PAIR, (1, 2)), lambda x: (x.matrix, x.formula())),
@@ -305,6 +307,7 @@ WITHOUT = {
     "Bundle": ("file table", "it is what a file held, and has its results"),
     "Chain": ("file record table", "an argument"),
     "Evaluator": ("file record table", "a program"),
+    "Energy": ("file record table", "an argument"),
     "Event": ("table", "one row of a family's data set"),
     "ExistenceProof": ("file", "its certificate is its file"),
     "ExpandableTerm": ("file record table", "an expression"),
@@ -314,6 +317,7 @@ WITHOUT = {
     "NormalFrequencies": ("file record table", "part of Member"),
     "NormalFrequencySeries": ("file", "a series, made anew"),
     "NormalMode": ("file record table", "part of NormalModes"),
+    "Orders": ("file record table", "an argument"),
     "ParametricResonance": ("file record table", "part of NormalModes"),
     "ProfileDistance": ("table", "one number and its mode"),
     "ProfileLine": ("table", "three numbers"),

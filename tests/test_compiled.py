@@ -27,7 +27,7 @@ print(*map(repr, integrate(Chain(N=4, alpha="0.3", beta="0.2"), [0.1] * 3, [0.2]
 
 EVERYTHING = """
 import numpy as np
-from symfpu import Chain, alignment_indices, floquet, integrate, lindstedt, periodic_orbit, prove_propagation, solve_amplitudes
+from symfpu import Chain, alignment_indices, floquet, integrate, lindstedt, prove_propagation, solve_amplitudes
 
 chain, beta = Chain(6, alpha="0.3", beta="0.2"), Chain(6, beta="0.3")
 near = [repr(1.01 * float(beta.frequencies()[q])) for q in (0, 1)]
@@ -39,7 +39,7 @@ for scheme in ("kahan_li8", "aba864_modes"):
     orbit = integrate(chain, [0.1] * 5, [0.2] * 5, 5, step=0.25, samples=4, scheme=scheme, averages=True)
     print(*orbit.Q[-1], *orbit.averages[-1])
 print(*alignment_indices(Chain(3, beta=1), [0.1, 0.2], [0.2, 0.1], 100.0, samples=64, vectors=2).log10_gali[-1])
-print(*np.abs(floquet(periodic_orbit(Chain(4, beta="0.3"), 1, "0.79")).pairs).ravel())
+print(*np.abs(floquet(symfpu.torus(Chain(4, beta="0.3"), (1,), frequencies=("0.79",))).pairs).ravel())
 """
 
 

@@ -54,5 +54,5 @@ def test_a_hole_is_no_answer(tmp_path):
     with pytest.raises(ZeroDivisionError):
         doors.answer(lambda c: 1 / 0, case)
     with pytest.raises(symfpu.InputError, match="seed"):
-        doors.answer(lambda c: symfpu.periodic_orbit(c.chain, 99, "0.4"), case)
+        doors.answer(lambda c: symfpu.torus(c.chain, (99,), frequencies=("0.4",)), case)
     assert doors.answer(lambda c: symfpu.breather_law(c.chain, 0.01), case) == "no"

@@ -40,12 +40,12 @@ def no_periodic_orbit():
 @cache
 def no_torus_at_energy():
     soft = Chain(2, beta="-0.5")
-    return caught(symfpu.NoTorusAtEnergy, symfpu.torus_at_energy, soft, (1,), "100", harmonic=False, order=1)
+    return caught(symfpu.NoTorusAtEnergy, symfpu.torus, soft, (1,), energy="100", method="series", order=1)
 
 
 @cache
 def no_frequencies():
-    return caught(symfpu.NoSelfConsistentFrequencies, symfpu.torus_at_amplitudes, Chain(8, beta=-1), {3: 10}, 1)
+    return caught(symfpu.NoSelfConsistentFrequencies, symfpu.torus, Chain(8, beta=-1), (3,), amplitudes={3: 10}, method="series", order=1)
 
 
 ERRORS = {

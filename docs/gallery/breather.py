@@ -3,8 +3,8 @@
 A torus of one angle: a periodic orbit carried by mode 25 of 32 bonds, that of Fig. 8 of the paper.
 """
 
-from symfpu import Chain, periodic_orbit
+from symfpu import Chain, torus
 
-orbit = periodic_orbit(Chain(32, alpha="0.33"), 25, "1.8830741847088537")
+orbit = torus(Chain(32, alpha="0.33"), (25,), frequencies=("1.8830741847088537",))
 print(orbit)
 orbit.plot()

@@ -3,7 +3,7 @@
 Tori of the same seeds in an alpha chain, a Toda chain and one of Lennard-Jones, at equal $c_3 A$.
 """
 
-from symfpu import Chain, plots, torus_at_amplitudes
+from symfpu import Chain, plots, torus
 
 chains = {
     "alpha": Chain(16, alpha="0.33"),
@@ -14,7 +14,6 @@ sizes = {
     name: 0.3 / abs(float(chain.potential.coefficient(3))) for name, chain in chains.items()
 }
 tori = [
-    torus_at_amplitudes(chains[name], {1: A, 2: A / 2}, order=6)
-    for name, A in sizes.items()
+    torus(chains[name], (1, 2), amplitudes={1: A, 2: A / 2}) for name, A in sizes.items()
 ]
 plots.spectrum(tori, labels=list(chains))

@@ -33,8 +33,9 @@ def actions(solution: Torus) -> dict[int, Any]:
     averaged over the others: exact on a torus, as close as the solution else. Ours. Raises
     InputError for what is no solution.
 
-    >>> from symfpu import Chain, breather_at_amplitude
-    >>> round(actions(breather_at_amplitude(Chain(8, beta=1), 1, "0.4"))[1], 9)
+    >>> import symfpu
+    >>> from symfpu import Chain
+    >>> round(actions(symfpu.torus(Chain(8, beta=1), (1,), amplitudes={1: "0.4"}))[1], 9)
     0.031268297
     """
     if not isinstance(solution, Torus):

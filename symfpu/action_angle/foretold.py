@@ -69,8 +69,9 @@ class ForetoldIndices(Shown, Gridded):
         the first, and a direction of the torus is seen from about 1 over its rate on.
     normal : "normal modes", which is exact, or "modes at rest", which is near.
 
-    >>> from symfpu import Chain, breather_at_amplitude, foretold_indices, normal_modes
-    >>> orbit = breather_at_amplitude(Chain(N=4, beta=1), 2, "0.4")
+    >>> import symfpu
+    >>> from symfpu import Chain, foretold_indices, normal_modes
+    >>> orbit = symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.4"})
     >>> foretold_indices(orbit, 1e6, vectors=4, normal=normal_modes(orbit))
     ForetoldIndices(N=4, beta=1, seeds=2, t = 1e+06, regular, dimension 1: slopes of GALI_2..4
     ..., on the torus -1, -2, -3, settled from t = ..., by normal modes)
@@ -241,8 +242,9 @@ def foretold_indices(
     sigma_q: the volumes of sections 3.2 and 4 are Gram determinants of that. Ours. Raises
     InputError, also for a hyperbolic torus; NoTwist.
 
-    >>> from symfpu import Chain, breather_at_amplitude
-    >>> found = foretold_indices(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.4"), 1e8)
+    >>> import symfpu
+    >>> from symfpu import Chain
+    >>> found = foretold_indices(symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.4"}), 1e8)
     >>> found.asymptotic_slopes
     {2: -1, 3: -2, 4: -3, 5: -4, 6: -6}
     """

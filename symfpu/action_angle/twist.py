@@ -41,8 +41,9 @@ class Twist(Gridded):
     was computed, (s, s), symmetric on a torus: see `asymmetry`.
     method : "Newton". digits : of numbers that are mpf; None for doubles. Ours.
 
-    >>> from symfpu import Chain, refine, torus_at_amplitudes, twist
-    >>> twist(refine(torus_at_amplitudes(Chain(8, beta=1), {1: "0.1", 3: "0.1"}, 4)))
+    >>> import symfpu
+    >>> from symfpu import Chain, refine, twist
+    >>> twist(symfpu.torus(Chain(8, beta=1), (1, 3), amplitudes={1: "0.1", 3: "0.1"}))
     Twist(N=8, beta=1, seeds=1,3, indefinite (1 positive, 1 negative), smallest eigenvalue
     -0.01375..., isoenergetic determinant 0.01756...)
     """
@@ -175,8 +176,9 @@ def twist(solution: Torus) -> Twist:
     InputError for a solution that is not refined; NoTwist where the amplitudes do not tell the
     actions.
 
-    >>> from symfpu import Chain, breather_at_amplitude
-    >>> twist(breather_at_amplitude(Chain(8, beta=1), 1, "0.01"))
+    >>> import symfpu
+    >>> from symfpu import Chain
+    >>> twist(symfpu.torus(Chain(8, beta=1), (1,), amplitudes={1: "0.01"}))
     Twist(N=8, beta=1, seeds=1, positive definite, smallest eigenvalue 0.0214..., ...)
     """
     by_angle = actions(solution)

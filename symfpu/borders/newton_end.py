@@ -24,6 +24,7 @@ from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.resonances import NearResonance
 from symfpu.refinement.search import ALL_THAT_FIT
 from symfpu.refinement.tori import NoTorus, ended_early, refine
+from symfpu.tori.energy import Energy
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
 
@@ -342,8 +343,7 @@ class _Tori:
         if self.ray.by == ENERGY:
             return refine(
                 guess,
-                energy=name,
-                energy_ratio=dict.fromkeys(seeds, 1),
+                energy=Energy(name, energy_ratio=dict.fromkeys(seeds, 1)),
                 tolerance=tolerance,
                 most_harmonics=most,
             )

@@ -13,9 +13,11 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
 from symfpu.numbers.counted import short
 from symfpu.tori.amplitudes import steps_of_frequencies
-from symfpu.tori.at_energy import torus_at_energy
-from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.tori.at_energy import series_at_energy
+from symfpu.tori.energy import Energy
+from symfpu.tori.frequencies import series_at_amplitudes
 from symfpu.tori.from_series import FromSeries
+from symfpu.tori.orders import Orders
 from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import RATIO_ORDERS, Assessment, assess
 
@@ -45,14 +47,13 @@ class Ray:
         return 1 if self.by == ENERGY else 2
 
     def torus(self, place: float, near: Torus[FromSeries] | None) -> Torus[FromSeries]:
-        """The torus of the series at a place; raises what `torus_at_energy` raises."""
-        name = f"{place:.{DIGITS}g}"
+        """The torus of the series at a place; raises what `series_at_energy` raises."""
+        name, orders = f"{place:.{DIGITS}g}", Orders(self.order)
         if self.by == ENERGY:
-            return torus_at_energy(
-                self.chain, self.seeds, name, order=self.order, near=near
-            )
+            energy = Energy(name)
+            return series_at_energy(self.chain, self.seeds, energy, orders, near=near)
         amplitudes = dict.fromkeys(self.seeds, name)
-        return torus_at_amplitudes(self.chain, amplitudes, self.order, near=near)
+        return series_at_amplitudes(self.chain, amplitudes, orders, near=near)
 
 
 @dataclass(frozen=True, eq=False)

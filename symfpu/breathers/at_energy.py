@@ -4,33 +4,16 @@ from __future__ import annotations
 
 import itertools
 import warnings
-from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from symfpu.breathers.balance import (
-    ONE_SEED,
-    HarmonicBalance,
-    as_periodic_orbit,
-    orbit_at,
-    orbit_near,
-)
-from symfpu.breathers.equations import Balance, Condition, NoPeriodicOrbit
+from symfpu.breathers.balance import HarmonicBalance, orbit_at
+from symfpu.breathers.equations import NoPeriodicOrbit
 from symfpu.breathers.from_rest import FromRest
 from symfpu.breathers.passage import EnergyGoal, first_passage
-from symfpu.breathers.waves import travelling_wave
-from symfpu.chain.chain import Chain, require_any_chain
-from symfpu.errors import InputError, SymfpuError
-from symfpu.numbers.public import public
-from symfpu.numbers.typed import Number, energy_of, seed_modes
-from symfpu.refinement.refined_torus import Newton
+from symfpu.chain.chain import Chain
+from symfpu.errors import SymfpuError
+from symfpu.tori.energy import Energy
 from symfpu.tori.torus import Torus
 
-Floats = NDArray[np.float64]
-
-# change of a coefficient from a guess to its orbit, relative to the largest, that is near
-REACH = 0.3
 # points of the walk beyond the orbit, and the energy relative to its own, up to which another one
 # is looked for
 MORE_POINTS, MORE_ENERGY = 20, 1.5
@@ -39,7 +22,7 @@ MORE_POINTS, MORE_ENERGY = 20, 1.5
 class NoBreatherAtEnergy(SymfpuError):
     """No breather of this energy: the family from rest ends below it.
 
-    Raised by `breather_at_energy`.
+    Raised by `torus`.
 
     seed : the mode. energy : asked for; harmonic : whether it is sum E_q.
     reached, frequency, amplitude : of the member with the largest energy, all dimensionless;
@@ -76,90 +59,33 @@ class NoBreatherAtEnergy(SymfpuError):
         )
 
 
-@dataclass(frozen=True)
-class Level:
-    """The condition that H, or the harmonic energy at t = 0, has a given value.
+def breather_of_energy(
+    chain: Chain, seed: int, energy: Energy, *, stacklevel: int = 3
+) -> Torus[HarmonicBalance]:
+    """The first orbit on the family from rest with the given energy, with A > 0.
 
-    Momenta vanish then, and Q_q(0) = sum_n c[n, q].
+    chain : with fixed ends. energy : H, or sum E_q at t = 0, when every momentum vanishes; any
+    ratio has one seed.
+
+    Harmonic balance; the breathers of section 6.4 by their energy, where the paper gives
+    frequencies. The family is followed in steps that do not depend on the energy. Where a wide gap
+    has turned it, it is followed a little further, and a UserWarning says that the energy is passed
+    again. Raises NoBreatherAtEnergy if the family from rest ends before.
     """
-
-    chain: Chain
-    energy: float
-    harmonic: bool
-
-    def __call__(self, balance: Balance) -> Condition:
-        def condition(z: Floats) -> tuple[float, Floats]:
-            Q = balance.cosines(z).sum(axis=0)
-            value, gradient = self._at(Q)
-            scale = self.energy / np.max(np.abs(z[:-1]))
-            excess = (value - self.energy) / scale
-            return excess, np.append(gradient[balance.q], 0.0) / scale
-
-        return condition
-
-    def _at(self, Q: Floats) -> tuple[float, Floats]:
-        """The energy of the state at rest Q, and its derivatives by Q."""
-        if self.harmonic:
-            gradient = self.chain.frequencies() ** 2 * Q
-            return float(gradient @ Q) / 2, gradient
-        energy = self.chain.energy(Q, np.zeros_like(Q))
-        return float(energy), -self.chain.accelerations(Q)
-
-
-@public
-def breather_at_energy(
-    chain: Chain,
-    seed: int,
-    energy: Number,
-    *,
-    harmonic: bool = False,
-    guess: Torus | None = None,
-) -> Torus[HarmonicBalance | Newton]:
-    """The q-breather of a seed mode with the given energy; frequency and amplitude are found.
-
-    chain, seed : the model and the mode, of a ring that of a travelling wave, signed; all
-        quantities are dimensionless.
-    energy : H, or with harmonic=True the harmonic energy sum E_q at t = 0, when every momentum
-        vanishes, of a ring averaged over the angle; a positive exact number.
-    harmonic : which of the two.
-    guess : a member nearby, any solution of this seed and chain; None follows the family from
-        rest, with A > 0.
-
-    Harmonic balance, as `periodic_orbit`; the breathers of section 6.4 by their energy, where the
-    paper gives frequencies. An energy may have several orbits. Without a guess this is the first
-    one on the family from rest, which is followed in steps that do not depend on the energy. Where
-    a wide gap has turned the family, it is followed a little further, and a UserWarning says
-    that the energy is passed again.
-    Raises InputError; NoBreatherAtEnergy if the family from rest ends before; with a guess
-    NoPeriodicOrbit; on a ring NoTorus.
-
-    >>> orbit = breather_at_energy(Chain(N=32, alpha="0.33"), 25, "0.00465")
-    >>> round(float(orbit.frequency), 12), round(float(orbit.energy()), 15)
-    (1.883074184707, 0.00465)
-    """
-    if not isinstance(harmonic, bool):
-        advice = "say whether energy means sum E_q at t = 0"
-        raise InputError("harmonic", harmonic, "True or False", advice)
-    if require_any_chain(chain).periodic:
-        return travelling_wave(chain, seed, "energy", energy, guess, harmonic=harmonic)
-    (seed,), target = seed_modes((seed,), chain.N), energy_of(energy)
-    goal = float(target)
-    if guess is not None:
-        member = _member(guess, chain, seed)
-        level = Level(chain, goal, harmonic)
-        return orbit_near(chain, seed, member.cosines, member.origin.sigma, level, REACH)
-    aim, walk = EnergyGoal(chain, goal, harmonic), None
+    goal = float(energy.exact)
+    aim, walk = EnergyGoal(chain, goal, energy.harmonic), None
     try:
         walk = FromRest(chain, seed)
         orbit = orbit_at(first_passage(walk, aim), walk.iterations)
     except NoPeriodicOrbit as failure:
         last = _highest(walk, aim) if walk else None
-        raise NoBreatherAtEnergy(seed, goal, harmonic, last, failure) from failure
+        raise NoBreatherAtEnergy(seed, goal, energy.harmonic, last, failure) from failure
     again = _passed_again(walk, aim) if walk.turned else None
     if again is not None:
         first = f"A = {orbit.amplitude:.6g} is the first orbit of this energy"
         later = f"the family from rest passes it again near A = {again:.6g}"
-        warnings.warn(f"{first}, {later}: give a guess for others", stacklevel=3)
+        advice = "refine(torus, energy=...) finds others near a guess"
+        warnings.warn(f"{first}, {later}: {advice}", stacklevel=stacklevel)
     return orbit
 
 
@@ -182,16 +108,6 @@ def _highest(walk: FromRest, aim: EnergyGoal) -> Torus[HarmonicBalance]:
     """The orbit of a walk with the largest energy."""
     highest = max(walk.points, key=lambda point: aim.value(point.balance, point.z))
     return orbit_at(highest, walk.iterations)
-
-
-def _member(guess: object, chain: Chain, seed: int) -> Torus[HarmonicBalance]:
-    """A guess as a periodic orbit of this seed and chain; raises InputError for any other."""
-    member = as_periodic_orbit(guess, "guess", ONE_SEED)
-    if (member.chain, member.seed) != (chain, seed):
-        given = f"of seed {member.seed}, {member.chain!r}"
-        allowed = f"a solution of seed {seed} of the same chain"
-        raise InputError("guess", given, allowed, "take a member nearby, or None")
-    return member
 
 
 def _energy(member: Torus[HarmonicBalance], harmonic: bool) -> float:

@@ -9,7 +9,6 @@ where V is even) are unknowns, and of these what the couplings let in.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,8 +21,6 @@ from symfpu.errors import SymfpuError
 from symfpu.numbers.room import require_room
 
 Floats = NDArray[np.float64]
-# of z: what has to vanish, relative to what it is made of, and its derivatives
-Condition = Callable[[Floats], tuple[float, Floats]]
 LARGEST_SYSTEM = 8192  # unknowns of a whole matrix; it has 512 MB
 TAIL = 1e-14  # of the largest coefficient: what the last eighth of the harmonics may reach
 STEP = 1e-14  # relative Newton step that ends the iteration at once
@@ -32,13 +29,13 @@ ITERATIONS = 25
 MOST_POWER = 5  # of the stretches, whose harmonics do not fold
 SMALL_BLOCK = 300  # coefficients of two harmonics, below which all are gathered at once
 GROWTH = 1e3  # factor by which iterates may leave the size of the guess, up or down
-NEARER = "start from a guess nearer to the orbit, such as an orbit of smaller amplitude"
+NEARER = "ask for an orbit of smaller amplitude"
 # of N^2 and of n^2 doubles that are alive at once
 TABLES_OF_MODES, TABLES_OF_HARMONICS, MATRICES = 12, 6, 3
 
 
 class NoPeriodicOrbit(SymfpuError):
-    """Newton's method found no periodic orbit: raised by `periodic_orbit` and its sisters.
+    """Newton's method found no periodic orbit: raised by `torus` of one seed.
 
     seed : the mode. iterate : the one with the smallest residual, cosine coefficients, shape
         (H+1, N-1).
@@ -288,15 +285,12 @@ class Balance:
         mirrored = self._sign * table[:, self._mirrored]
         return np.asarray(self._linear * (table[:, self._apart] + mirrored))
 
-    def newton(
-        self, z: Floats, given: int | Condition, most: int = ITERATIONS
-    ) -> tuple[Floats, int]:
-        """The solution with the same z[given], or that meets a condition, and the number of steps.
+    def newton(self, z: Floats, most: int = ITERATIONS) -> tuple[Floats, int]:
+        """The solution with the same amplitude of the seed, and the number of steps.
 
         Raises NoPeriodicOrbit, also where more steps than `most` would be needed.
         """
-        places = np.arange(len(z))
-        free = places if callable(given) else np.delete(places, given)
+        free = np.delete(np.arange(len(z)), self.first)
         best, least, before = z, np.inf, np.inf
         size = _largest(z[:-1])
         for iteration in range(1, most + 1):
@@ -304,10 +298,6 @@ class Balance:
             imbalance = _largest(equations) / _largest(z[:-1])
             if imbalance < least:
                 best, least = z, imbalance
-            if callable(given):
-                value, row = given(z)
-                equations = np.append(equations, value)
-                jacobian = np.vstack([jacobian, row])
             try:
                 step = np.linalg.solve(jacobian[:, free], equations)
             except np.linalg.LinAlgError:
@@ -319,8 +309,7 @@ class Balance:
             if not size / GROWTH < reached < size * GROWTH:
                 reason = f"the largest coefficient goes from {size:.3g} to {reached:.3g}"
                 raise NoPeriodicOrbit(self, reason, best)
-            of_coefficients = step[free < len(z) - 1]
-            relative = _largest(of_coefficients) / reached
+            relative = _largest(step[:-1]) / reached
             if relative <= STEP or before / 2 < relative < ROUNDING_STEP:
                 return z, iteration
             before = relative
@@ -335,16 +324,6 @@ def relative_heights(cosines: Floats) -> Floats:
     """The largest coefficient of every harmonic over the largest of all; shape (H+1,)."""
     heights = np.max(np.abs(cosines), axis=1)
     return np.asarray(heights / np.max(np.abs(cosines)))
-
-
-def held_frequency(balance: Balance) -> int:
-    """The place of sigma in the vectors of a balance."""
-    return len(balance.n)
-
-
-def held_amplitude(balance: Balance) -> int:
-    """The place of A in the vectors of a balance."""
-    return balance.first
 
 
 def residual(chain: Chain, omega: float, cosines: Floats) -> float:

@@ -63,11 +63,14 @@ class Floquet(Shown, Gridded):
         map.
     trivial_error : by how much the trivial pair of the computed map misses kappa = 0.
 
-    >>> from symfpu import Chain, periodic_orbit
-    >>> floquet(periodic_orbit(Chain(N=4, beta=1), 2, "1.4168"))
+    >>> import symfpu
+    >>> import symfpu
+    >>> from symfpu import Chain
+    >>> floquet(symfpu.torus(Chain(N=4, beta=1), (2,), frequencies=("1.4168",)))
     Floquet(N=4, beta=1, seed 2, omega=1.4168, stable, largest |multiplier| 1,
     symplecticity error ...)
-    >>> floquet(periodic_orbit(Chain(N=4, beta=1), 2, "1.4168")).to_frame()[["pair", "kind"]]
+    >>> orbit = symfpu.torus(Chain(N=4, beta=1), (2,), frequencies=("1.4168",))
+    >>> floquet(orbit).to_frame()[["pair", "kind"]]
        pair           kind
     0     0        trivial
     1     1  on the circle
@@ -164,7 +167,7 @@ def monodromy(orbit: Torus, *, scheme: str = "kahan_li8") -> Floats:
 def floquet(orbit: Torus, *, scheme: str = "kahan_li8") -> Floquet:
     """Floquet multipliers and stability of a periodic orbit.
 
-    orbit : a solution of one angle, from `periodic_orbit`, `refine` or others, on a ring also
+    orbit : a solution of one angle, from `torus`, `refine` or others, on a ring also
         from `unfold`; dimensionless. Of a truncated series, multipliers are
         as good as the orbit is.
     scheme : of the integrator, on T + V; with one of lower order errors and tolerances are larger.
@@ -174,9 +177,9 @@ def floquet(orbit: Torus, *, scheme: str = "kahan_li8") -> Floquet:
     SAFETY times its error to first order. Of eigenvectors l and r that is the error of the map
     times |B l| + |C r|, over |l . r|: next to the trivial pair both are small. Raises InputError.
 
+    >>> import symfpu
     >>> from symfpu.chain.chain import Chain
-    >>> from symfpu.breathers.balance import breather_at_amplitude
-    >>> floquet(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")).stable
+    >>> floquet(symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.1"})).stable
     True
     """
     from scipy.linalg import eig

@@ -39,7 +39,6 @@ from symfpu.breathers.equations import (
     TAIL,
     Balance,
     NoPeriodicOrbit,
-    held_amplitude,
     relative_heights,
 )
 from symfpu.breathers.linearisation import WHOLE
@@ -132,7 +131,7 @@ class FromRest:
         guess = first.z * ratio
         guess[-1] *= ratio
         guess[:-1][balance.n != 1] *= ratio
-        z, steps = balance.newton(guess, balance.first)
+        z, steps = balance.newton(guess)
         return point_at(balance, z, _seed_axis(balance), steps)
 
     def _begun(self) -> list[Point]:
@@ -193,7 +192,7 @@ class FromRest:
         while True:
             balance = Balance(self.chain, self.seed, harmonics)
             guess = balance.vector(cosines, sigma)
-            z, steps = balance.newton(guess, held_amplitude(balance))
+            z, steps = balance.newton(guess)
             found = point_at(balance, z, _seed_axis(balance), steps)
             if resolved(found):
                 return found

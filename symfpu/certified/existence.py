@@ -53,10 +53,10 @@ MORE_DIGITS = "more digits may help: digits=40"
 MORE_HARMONICS = "more harmonics may help: digits=40 takes what it needs"
 SMALLER = "an orbit of smaller amplitude is easier"
 GIVEN = "give amplitude= or energy= instead of it"
-NO_ORBIT = "more digits of it do not help: Newton's method, periodic_orbit, finds orbits"
+NO_ORBIT = "more digits of it do not help: Newton's method, torus, finds orbits"
 HALF_A_RING = (
     "a standing breather of a ring, odd about two particles, is that of half the ring with fixed "
-    "ends; travelling waves have breather_at_amplitude and its sisters"
+    "ends; travelling waves have torus and refine"
 )
 SHORTER = "a shorter segment can: a half width of"
 HALVINGS = 60
@@ -100,8 +100,9 @@ class ExistenceProof(Tabled):
     digits : of the orbit that was given. body : the certificate in plain lists, without its
         digest. Dimensionless. Ours: docs/existence.md.
 
-    >>> from symfpu import Chain, periodic_orbit, prove_existence
-    >>> prove_existence(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"))
+    >>> import symfpu
+    >>> from symfpu import Chain, prove_existence
+    >>> prove_existence(symfpu.torus(Chain(N=8, alpha="0.3"), (1,), frequencies=("0.3905",)))
     ExistenceProof(N=8, alpha=0.3, seed 1, omega=0.3905: a periodic orbit within ... of the
     computed one, the only one within ...; A = 0.4051586230... +- ..., H = 0.01279842208... +- ...)
     """
@@ -234,8 +235,8 @@ def prove_existence(
 ) -> ExistenceProof:
     """A proof that the chain has a periodic orbit near the computed one, or an error that says why.
 
-    orbit : of one angle, of a chain with fixed ends: from `periodic_orbit`,
-        `breather_at_energy` and their sisters, or of `refine`, or a series of one seed;
+    orbit : of one angle, of a chain with fixed ends: from `torus` or
+        `refine`, or a series of one seed;
         or a travelling wave of a ring, from the same. Its phase does not matter. All
         is dimensionless.
     amplitude, energy : that of the orbit, an exact number: the true orbit has exactly this A or H,
@@ -251,8 +252,9 @@ def prove_existence(
     Raises InputError for what is not such an orbit; NoExistenceProof with the bound that failed:
     that is no proof that there is none.
 
-    >>> from symfpu import Chain, periodic_orbit
-    >>> orbit = periodic_orbit(Chain(N=2, beta=1), 1, "1.5")
+    >>> import symfpu
+    >>> from symfpu import Chain
+    >>> orbit = symfpu.torus(Chain(N=2, beta=1), (1,), frequencies=("1.5",))
     >>> proof = prove_existence(orbit)
     >>> proof.radius < 1e-13 < 1e-4 < proof.unique
     True
@@ -311,8 +313,7 @@ def near(fixed: Fixed, own: Any, chain: Chain) -> Fixed:
     if abs(float(fixed.value) - float(own)) > NEAR * abs(float(own)):
         allowed = f"about that of the orbit, {float(own):.10g}"
         given = decimal(fixed.value)
-        maker = f"breather_at_{fixed.kind}"
-        raise InputError(fixed.kind, given, allowed, f"take an orbit from {maker}")
+        raise InputError(fixed.kind, given, allowed, "take an orbit from torus")
     return fixed
 
 
@@ -336,7 +337,7 @@ def checked_orbit(orbit: object) -> Torus:
         name, chain = type(orbit).__name__, getattr(orbit, "chain", None)
         given = name if chain is None else f"{name} of {chain!r}"
         allowed = "a solution of one angle of a chain with fixed ends, or a travelling wave"
-        raise InputError("orbit", given, allowed, "take one from periodic_orbit")
+        raise InputError("orbit", given, allowed, "take one from torus")
     if len(orbit.seeds) > 1:
         given = f"a torus of {len(orbit.seeds)} angles"
         raise InputError("orbit", given, "a solution of one angle", "take one seed")

@@ -19,7 +19,7 @@ from symfpu.certified.rounded_torus import (
     rounded_torus,
 )
 from symfpu.certified.series import Series
-from symfpu.certified.torus_energy import Energy, energy_of
+from symfpu.certified.torus_energy import EnergyBall, energy_of
 from symfpu.chain.chain import Chain
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
@@ -66,10 +66,11 @@ class ResidualProof(Tabled):
         theorem is about its coefficients rounded some 20 bits below the last digit.
     body : the certificate without its digest. Dimensionless. Ours: docs/tori-proofs.md.
 
-    >>> from symfpu import Chain, prove_residual, refine, torus_at_amplitudes
+    >>> import symfpu
+    >>> from symfpu import Chain, prove_residual, refine
     >>> amplitudes = {1: "0.2", 2: "0.1"}
-    >>> guess = torus_at_amplitudes(Chain(N=4, alpha="0.3"), amplitudes, order=4)
-    >>> prove_residual(refine(guess, amplitudes=amplitudes, digits=30))
+    >>> torus = symfpu.torus(Chain(N=4, alpha="0.3"), (1, 2), amplitudes=amplitudes, digits=30)
+    >>> prove_residual(torus)
     ResidualProof(N=4, alpha=0.3, omega_1=0.76..., omega_2=1.41..., 30 digits: residual below
     ... of every particle at all angles, H within ..., ... of the largest acceleration)
     """
@@ -152,10 +153,11 @@ def prove_residual(torus: Torus, *, progress: Progress | None = None) -> Residua
     in integers with exact products, is above it at every angle (docs/tori-proofs.md; ours).
     Raises InputError for what is not such a torus.
 
-    >>> from symfpu import Chain, prove_residual, refine, torus_at_amplitudes
+    >>> import symfpu
+    >>> from symfpu import Chain, prove_residual, refine
     >>> amplitudes = {1: "0.2", 2: "0.1"}
-    >>> guess = torus_at_amplitudes(Chain(N=3, beta=1), amplitudes, order=4)
-    >>> prove_residual(refine(guess, amplitudes=amplitudes, digits=40)).bound < 1e-38
+    >>> torus = symfpu.torus(Chain(N=3, beta=1), (1, 2), amplitudes=amplitudes, digits=40)
+    >>> prove_residual(torus).bound < 1e-38
     True
     """
     rounded = rounded_torus(torus)
@@ -183,14 +185,14 @@ def residual_proof(torus: RoundedTorus, found: list[Fraction]) -> ResidualProof:
     )
 
 
-def stated_energy(torus: RoundedTorus, found: Energy | None) -> Energy | None:
+def stated_energy(torus: RoundedTorus, found: EnergyBall | None) -> EnergyBall | None:
     """With a middle of so many places as the torus, and a radius of few bits."""
     if found is None:
         return None
     unit = Fraction(1, 1 << (torus.bits + GUARD_BITS))
     middle = round(found.middle / unit) * unit
     apart = found.radius + abs(middle - found.middle)
-    return Energy(middle, rounded_up(SLACK * apart))
+    return EnergyBall(middle, rounded_up(SLACK * apart))
 
 
 def in_digits(x: Fraction, digits: int) -> Any:
@@ -253,7 +255,7 @@ def nonzero(series: Series) -> list[tuple[tuple[int, ...], int]]:
     return found
 
 
-def residual_body(torus: RoundedTorus, bound: Fraction, energy: Energy | None) -> Body:
+def residual_body(torus: RoundedTorus, bound: Fraction, energy: EnergyBall | None) -> Body:
     """The certificate of a residual without its digest; what concerns a stay is empty."""
     potential = torus.chain.potential
     assert potential.degree is not None

@@ -31,7 +31,7 @@ SPARE_DIGITS = 6  # of the integers beyond those of the orbit
 FORBIDDEN = (
     1e-9  # of the largest coefficient: what the symmetry forbids is rounding below it
 )
-ADVICE = "take one from periodic_orbit, breather_at_amplitude or refine"
+ADVICE = "take one from torus or refine"
 
 
 @dataclass(frozen=True)

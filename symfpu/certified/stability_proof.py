@@ -105,8 +105,9 @@ class StabilityProof(Tabled):
         an empty tuple for an unstable one. theorem : in one sentence. body : the certificate
         without its digest. Dimensionless. Ours: docs/stability-proofs.md.
 
-    >>> from symfpu import Chain, periodic_orbit, prove_stability
-    >>> prove_stability(periodic_orbit(Chain(N=8, alpha="0.3"), 1, "0.3905"))
+    >>> import symfpu
+    >>> from symfpu import Chain, prove_stability
+    >>> prove_stability(symfpu.torus(Chain(N=8, alpha="0.3"), (1,), frequencies=("0.3905",)))
     StabilityProof(N=8, alpha=0.3, seed 1, omega=0.3905: linearly stable, 6 exponents within ...,
     smallest gap 0.0110... omega)
     """
@@ -218,8 +219,9 @@ def prove_stability(
     Raises InputError and NoExistenceProof as `prove_existence` does; NoStabilityProof with the
     exponent and the bound that failed: that proves nothing.
 
-    >>> from symfpu import Chain, breather_at_amplitude
-    >>> prove_stability(breather_at_amplitude(Chain(N=6, beta=1), 4, "0.6"))
+    >>> import symfpu
+    >>> from symfpu import Chain
+    >>> prove_stability(symfpu.torus(Chain(N=6, beta=1), (4,), amplitudes={4: "0.6"}))
     StabilityProof(N=6, beta=1, seed 4, omega=1.9005...: linearly unstable, growth rate in
     0.02488... .. 0.02488...)
     """

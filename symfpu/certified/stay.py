@@ -94,10 +94,11 @@ class StayProof(Tabled):
     growth : the bounds, exact. reach : stretches at |v| = 1. harmonics, digits : of the torus.
     body : the certificate without its digest. Dimensionless. Ours: docs/tori-proofs.md.
 
-    >>> from symfpu import Chain, prove_stay, refine, torus_at_amplitudes
+    >>> import symfpu
+    >>> from symfpu import Chain, prove_stay, refine
     >>> amplitudes = {1: "0.2", 2: "0.1"}
-    >>> guess = torus_at_amplitudes(Chain(N=3, alpha="0.3"), amplitudes, order=4)
-    >>> prove_stay(refine(guess, amplitudes=amplitudes, digits=30))
+    >>> torus = symfpu.torus(Chain(N=3, alpha="0.3"), (1, 2), amplitudes=amplitudes, digits=30)
+    >>> prove_stay(torus)
     StayProof(N=3, alpha=0.3, omega_1=0.99..., omega_2=1.73..., 30 digits: an orbit that starts
     on the torus stays within ... of it for t <= 1000000000, its angles within ... of phi +
     omega t; at most t <= ...)
@@ -199,10 +200,11 @@ def prove_stay(
     Raises InputError for what is not such a torus, NoTwist and NoNormalModes where it has no
     frame, NoStayProof with the longest time.
 
-    >>> from symfpu import Chain, prove_stay, refine, torus_at_amplitudes
+    >>> import symfpu
+    >>> from symfpu import Chain, prove_stay, refine
     >>> amplitudes = {1: "0.2", 2: "0.1"}
-    >>> guess = torus_at_amplitudes(Chain(N=4, alpha="0.3"), amplitudes, order=4)
-    >>> proof = prove_stay(refine(guess, amplitudes=amplitudes, digits=30))
+    >>> torus = symfpu.torus(Chain(N=4, alpha="0.3"), (1, 2), amplitudes=amplitudes, digits=30)
+    >>> proof = prove_stay(torus)
     >>> proof.distance < 1e-19
     True
     """

@@ -18,14 +18,14 @@ from symfpu.certified.rounded_torus import GUARD_BITS, RoundedTorus
 from symfpu.certified.series import Series
 
 
-class Energy(NamedTuple):
+class EnergyBall(NamedTuple):
     """|H - middle| <= radius at all angles."""
 
     middle: Fraction
     radius: Fraction
 
 
-def energy_of(torus: RoundedTorus, residual: Sequence[Fraction]) -> Energy | None:
+def energy_of(torus: RoundedTorus, residual: Sequence[Fraction]) -> EnergyBall | None:
     """H of the torus; None where a harmonic of it does not turn, nu.omega = 0.
 
     residual : norms of what every particle leaves of the equations of motion.
@@ -36,7 +36,7 @@ def energy_of(torus: RoundedTorus, residual: Sequence[Fraction]) -> Energy | Non
     speeds = [moved.norm for moved in velocities(torus)]
     work = sum((v * r for v, r in zip(speeds, residual, strict=True)), Fraction(0))
     mean = mean_energy(torus)
-    return Energy(mean.middle, mean.radius + work / least)
+    return EnergyBall(mean.middle, mean.radius + work / least)
 
 
 def velocities(torus: RoundedTorus) -> list[Series]:
@@ -45,7 +45,7 @@ def velocities(torus: RoundedTorus) -> list[Series]:
     return [series.turned(torus.omega, Fraction(0)) for series in fine]
 
 
-def mean_energy(torus: RoundedTorus) -> Energy:
+def mean_energy(torus: RoundedTorus) -> EnergyBall:
     """The mean of H over the angles: sum_j <x_j'^2> / 2 + sum_j <V(r_j)>.
 
     The mirror image of a bond or particle moves as it does, half a turn of some angles later.
@@ -55,7 +55,7 @@ def mean_energy(torus: RoundedTorus) -> Energy:
     terms = {1: Fraction(1), **torus.couplings}
     bonds = first_half(torus.stretches(torus.bits + GUARD_BITS))
     stretch = by_reflection([mean_potential(r, terms) for r in bonds], torus.chain.N)
-    return Energy(speed.middle + stretch.middle, speed.radius + stretch.radius)
+    return EnergyBall(speed.middle + stretch.middle, speed.radius + stretch.radius)
 
 
 def first_half(every: list[Series]) -> list[Series]:
@@ -63,20 +63,20 @@ def first_half(every: list[Series]) -> list[Series]:
     return every[: (len(every) + 1) // 2]
 
 
-def by_reflection(half: list[Energy], count: int) -> Energy:
+def by_reflection(half: list[EnergyBall], count: int) -> EnergyBall:
     """The sum of all so many from those of the first half."""
     every = [*half, *half[: count // 2]]
     middle, radius = (sum(column, Fraction(0)) for column in zip(*every, strict=True))
-    return Energy(middle, radius)
+    return EnergyBall(middle, radius)
 
 
-def kinetic(moved: Series) -> Energy:
+def kinetic(moved: Series) -> EnergyBall:
     """<x'^2> / 2."""
     mean = mean_product(moved, moved)
-    return Energy(mean.middle / 2, mean.radius / 2)
+    return EnergyBall(mean.middle / 2, mean.radius / 2)
 
 
-def mean_potential(r: Series, terms: dict[int, Fraction]) -> Energy:
+def mean_potential(r: Series, terms: dict[int, Fraction]) -> EnergyBall:
     """<V(r)> from V' = sum terms[k] r^k: r^(k+1) is a product of two lower powers."""
     powers = [r]
     while 2 * len(powers) < max(terms) + 1:
@@ -87,16 +87,16 @@ def mean_potential(r: Series, terms: dict[int, Fraction]) -> Energy:
         mean = mean_product(powers[lower - 1], powers[k - lower])
         middle += coupling / (k + 1) * mean.middle
         radius += abs(coupling) / (k + 1) * mean.radius
-    return Energy(middle, radius)
+    return EnergyBall(middle, radius)
 
 
-def mean_product(one: Series, other: Series) -> Energy:
+def mean_product(one: Series, other: Series) -> EnergyBall:
     """<one conj(other)>; of even functions that of their product."""
     inner = tuple(map(min, one.highest, other.highest))
     total = int((centred(one, inner) * centred(other, inner)).sum())
     error = one.size * other.error + (other.size - other.error) * one.error
     unit = Fraction(1, 1 << (one.places + other.places))
-    return Energy(total * unit, error * unit)
+    return EnergyBall(total * unit, error * unit)
 
 
 def centred(series: Series, highest: tuple[int, ...]) -> np.ndarray:

@@ -503,8 +503,7 @@ def linear_frequencies(N: int, ends: str = "fixed") -> Floats:
 
 
 TAKES_RINGS = (
-    "leave ends= out; what takes a ring, as lindstedt or breather_at_energy, "
-    "is in docs/chains.md"
+    "leave ends= out; what takes a ring, as lindstedt or torus, is in docs/chains.md"
 )
 
 

@@ -8,8 +8,6 @@ from typing import Annotated, Any
 
 import typer
 
-from symfpu.breathers.at_energy import breather_at_energy
-from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
 from symfpu.breathers.floquet import floquet
 from symfpu.chain.chain import Chain
 from symfpu.cli.chains import (
@@ -38,6 +36,7 @@ from symfpu.files.progress import NO_FRACTION
 from symfpu.refinement.tori import refine
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import save
+from symfpu.solutions.torus import torus
 from symfpu.tori.torus import Torus
 
 
@@ -109,8 +108,8 @@ def _found(
     chain: Chain, seed: int, omega: str | None, amplitude: str | None, energy: str | None
 ) -> Torus:
     if omega is not None:
-        return periodic_orbit(chain, seed, omega)
+        return torus(chain, (seed,), frequencies=(omega,))
     if amplitude is not None:
-        return breather_at_amplitude(chain, seed, amplitude)
+        return torus(chain, (seed,), amplitudes={seed: amplitude})
     assert energy is not None
-    return breather_at_energy(chain, seed, energy)
+    return torus(chain, (seed,), energy=energy)

@@ -38,6 +38,7 @@ from symfpu.cli.terminal import (
     whole,
     whole_numbers,
 )
+from symfpu.cli.tori import verdict_of
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.families.following import METHODS, family
@@ -51,6 +52,7 @@ from symfpu.refinement.tori import refine
 from symfpu.reports.family import family_table, family_text
 from symfpu.reports.solution import refined_text, solution_record, solution_text
 from symfpu.saved.results import load, save
+from symfpu.tori.energy import Energy
 from symfpu.tori.torus import Torus, comes_from
 
 ResonanceOption = Annotated[
@@ -124,11 +126,12 @@ def refine_file(
         raise InputError("checkpoint", checkpoint, "one with --digits", "leave it out")
     run = None if checkpoint is None else path_named("checkpoint", checkpoint)
     kept = output_named(output)
+    if harmonic and energy is None:
+        raise InputError("harmonic", True, "none without --energy", "give --energy E, too")
     given: dict[str, Any] = {
         "frequencies": by_seed_or_none("frequencies", frequencies, torus.seeds),
         "amplitudes": by_seed_or_none("amplitudes", amplitudes, torus.seeds),
-        "energy": energy,
-        "harmonic": harmonic,
+        "energy": None if energy is None else Energy(energy, harmonic=harmonic),
         "start": by_seed_or_none("start", start, torus.seeds),
         "digits": places,
         "file": run,
@@ -151,12 +154,6 @@ def refine_file(
         if kept:
             print(f"written: {kept}")
         say_drawn(picture)
-
-
-def verdict_of(torus: Torus) -> dict[str, Any]:
-    """What a file says of a refined torus."""
-    verdict = "doubtful" if torus.warnings else "torus"
-    return {"verdict": verdict, "reasons": list(torus.warnings)}
 
 
 def by_seed_or_none(

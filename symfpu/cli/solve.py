@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+import warnings
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -23,7 +24,6 @@ from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
 from symfpu.cli.terminal import (
     HarmonicOption,
     JsonOption,
-    OrderOption,
     SeedsOption,
     by_seed,
     one_of,
@@ -31,23 +31,23 @@ from symfpu.cli.terminal import (
     print_json,
     progress_bar,
     say,
-    whole,
     whole_numbers,
     width_of,
 )
-from symfpu.cli.tori import print_solution
+from symfpu.cli.tori import print_solution, verdict_of
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
+from symfpu.refinement.refined_torus import Newton
 from symfpu.reports.series import assessment_text
-from symfpu.reports.solution import solution_record
+from symfpu.reports.solution import refined_text, solution_record, solution_text
 from symfpu.saved.results import save
-from symfpu.series.lindstedt import lindstedt
-from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.at_energy import torus_at_energy
-from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.solutions.series import series_torus
+from symfpu.solutions.torus import torus
+from symfpu.tori.energy import Energy
 from symfpu.tori.from_series import FromSeries
-from symfpu.tori.torus import Torus
+from symfpu.tori.orders import Orders
+from symfpu.tori.torus import Torus, comes_from
 from symfpu.tori.verdict import Assessment, assess
 
 EQUAL_SHARES = "equal time averages of E_q of the seeds; --shares S,S,... for others"
@@ -67,7 +67,7 @@ class Wish:
     amplitudes: dict[int, str] | None
     shares: dict[int, str] | None
     harmonic: bool
-    order: int
+    order: int | None
     frequency_order: int | None
     coordinate_order: int | None
     digits: int | None
@@ -80,7 +80,6 @@ def solve(
     context: typer.Context,
     bonds: BondsOption,
     seeds: SeedsOption,
-    order: OrderOption,
     omega: Annotated[
         str | None,
         typer.Option(
@@ -110,6 +109,13 @@ def solve(
     beta: BetaOption = "0",
     potential: PotentialOption = None,
     ends: EndsOption = "fixed",
+    order: Annotated[
+        str | None,
+        typer.Option(
+            help="The truncated series of this order.  Default: Newton's method.",
+            metavar="K",
+        ),
+    ] = None,
     frequency_order: Annotated[
         str | None,
         typer.Option(
@@ -142,7 +148,8 @@ def solve(
 ) -> None:
     """The q-torus of exactly one of --omega, --energy and --amplitudes.
 
-    Frequencies, amplitudes and energies, with a verdict on its series.
+    It solves the equations of motion to rounding; one seed: a breather. With --order it is the
+    truncated series of the paper, with a verdict.
     """
     chain = chain_of(bonds, alpha, beta, potential, ends)
     chosen = tuple(whole_numbers("seeds", seeds))
@@ -157,35 +164,96 @@ def solve(
         else by_seed("amplitudes", amplitudes, chosen),
         shares=None if shares is None else by_seed("shares", shares, chosen),
         harmonic=harmonic,
-        order=whole("order", order),
+        order=optional("order", order),
         frequency_order=optional("frequency-order", frequency_order),
         coordinate_order=optional("coordinate-order", coordinate_order),
         digits=optional("digits", digits),
     )
+    if wish.order is None:
+        _refuse_cuts(wish)
+        _by_newton(context, chain, chosen, wish, (output, plot), as_json=as_json)
+        return
     file = output_named(output)
     picture = picture_named(plot)
     with progress_bar("series") as advance:
-        torus, assessment, record = _found(chain, chosen, wish, advance)
+        found, assessment, record = _found(chain, chosen, wish, advance)
         if file:
             advance("writing", NO_FRACTION)
             save(
                 file,
-                torus,
+                found,
                 verdict=assessment.record(),
                 command=shlex.join(["symfpu", *context.obj]),
             )
-        draw(torus.plot, picture)
+        draw(found.plot, picture)
     if as_json:
         print_json(record)
         return
     say(f"verdict: {assessment.verdict}")
-    print_solution(torus, record)
+    print_solution(found, record)
     if "energy_shares" in record:
         say(f"energy shared      {_shares_text(wish)}")
     say(assessment_text(assessment, width_of(sys.stdout)))
+    if assessment.word != "converged":
+        say("without --order: the torus itself, by Newton's method")
     if file:
         print(f"written: {file}")
     say_drawn(picture)
+
+
+def _by_newton(
+    context: typer.Context,
+    chain: Chain,
+    seeds: tuple[int, ...],
+    wish: Wish,
+    files: tuple[str | None, str | None],
+    *,
+    as_json: bool,
+) -> None:
+    """The torus that solves the equations of motion, printed and kept.
+
+    files : of --output and --plot.
+    """
+    file, picture = output_named(files[0]), picture_named(files[1])
+    with progress_bar("Newton's method") as advance:
+        with warnings.catch_warnings(record=True) as several:
+            warnings.simplefilter("always", UserWarning)
+            found = torus(
+                chain, seeds, **_asked(wish), digits=wish.digits, progress=advance
+            )
+        doubts = tuple(str(w.message) for w in several if w.category is UserWarning)
+        if file:
+            command = shlex.join(["symfpu", *context.obj])
+            save(file, found, verdict=verdict_of(found), command=command)
+        draw(found.plot, picture)
+    record = solution_record(found, warnings=doubts)
+    if as_json:
+        print_json(record)
+        return
+    say(refined_text(found) if comes_from(found, Newton) else solution_text(record))
+    if file:
+        print(f"written: {file}")
+    say_drawn(picture)
+
+
+def _asked(wish: Wish) -> dict[str, Any]:
+    """What fixes the torus, as `torus` takes it."""
+    energy = wish.energy
+    given = {
+        "frequencies": wish.frequencies,
+        "amplitudes": wish.amplitudes,
+        "energy": energy
+        and Energy(energy, harmonic=wish.harmonic, energy_ratio=wish.shares),
+    }
+    return {name: value for name, value in given.items() if value is not None}
+
+
+def _refuse_cuts(wish: Wish) -> None:
+    """InputError for orders at which a series is cut, where there is none."""
+    for name in ("frequency_order", "coordinate_order"):
+        if getattr(wish, name) is not None:
+            allowed = "none without --order, as Newton's method has no series"
+            raise InputError(name, getattr(wish, name), allowed, "give --order K, too")
 
 
 def _refuse_without_energy(energy: str | None, shares: str | None, harmonic: bool) -> None:
@@ -211,43 +279,28 @@ def _found(
     """The torus, the verdict on its series, and both for JSON."""
     if chain.periodic:
         _refuse_on_a_ring(wish)
-    torus = _torus(chain, seeds, wish, advance)
-    assessment = assess(torus.origin.series, torus, progress=advance)
-    record = solution_record(torus, assessment=assessment)
+    found = _torus(chain, seeds, wish, advance)
+    assessment = assess(found.origin.series, found, progress=advance)
+    record = solution_record(found, assessment=assessment)
     if wish.energy is not None:
         shares = wish.shares or dict.fromkeys(seeds, "1")
-        record["energy_shares"] = {str(q): shares[q] for q in torus.seeds}
-    return torus, assessment, record
+        record["energy_shares"] = {str(q): shares[q] for q in found.seeds}
+    return found, assessment, record
 
 
 def _torus(
     chain: Chain, seeds: tuple[int, ...], wish: Wish, advance: Progress
 ) -> Torus[FromSeries]:
-    if wish.frequencies is not None:
-        series = lindstedt(
-            chain, seeds, wish.frequencies, wish.order, digits=wish.digits, progress=advance
-        )
-        advance("amplitudes", NO_FRACTION)
-        K, cut = wish.frequency_order, wish.coordinate_order
-        return solve_amplitudes(series, frequency_order=K, order=cut)
-    advance("frequencies", NO_FRACTION)
-    orders = {
-        "order": wish.order,
+    if wish.frequencies is None:
+        advance("frequencies", NO_FRACTION)
+    assert wish.order is not None
+    asked = _asked(wish)
+    cuts: dict[str, Any] = {
         "frequency_order": wish.frequency_order,
         "coordinate_order": wish.coordinate_order,
-        "digits": wish.digits,
     }
-    if wish.amplitudes is not None:
-        return torus_at_amplitudes(chain, wish.amplitudes, **orders)  # type: ignore[arg-type]
-    assert wish.energy is not None
-    return torus_at_energy(
-        chain,
-        seeds,
-        wish.energy,
-        harmonic=wish.harmonic,
-        energy_ratio=wish.shares,
-        **orders,  # type: ignore[arg-type]
-    )
+    orders = Orders(wish.order, **cuts)
+    return series_torus(chain, seeds, asked, orders, wish.digits, advance)
 
 
 def _refuse_on_a_ring(wish: Wish) -> None:

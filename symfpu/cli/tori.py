@@ -80,3 +80,9 @@ def print_solution(solution: Torus, record: dict[str, Any]) -> None:
         _print_torus(solution, record)
     else:
         say(solution_text(record))
+
+
+def verdict_of(torus: Torus) -> dict[str, Any]:
+    """What a file says of a refined torus."""
+    verdict = "doubtful" if torus.warnings else "torus"
+    return {"verdict": verdict, "reasons": list(torus.warnings)}

@@ -22,11 +22,12 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.frequency_shift import frequency_shift
 from symfpu.errors import (
     DidNotConverge,
@@ -42,8 +43,9 @@ from symfpu.numbers.typed import Number, double, integer, seed_modes
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import root_squares, shifts, solve_amplitudes
 from symfpu.tori.broyden import NotFound
-from symfpu.tori.frequencies import Frequencies, Plan, checked_plan, positive_by_seed
+from symfpu.tori.frequencies import Frequencies, positive_by_seed, require_size
 from symfpu.tori.from_series import FromSeries
+from symfpu.tori.orders import Orders, require_shifts
 from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
@@ -208,9 +210,15 @@ def appendix_a_members(
     The linear specific energy of the seeds grows by Delta epsilon_l at each step, to first order,
     and H by about N Delta epsilon_l.
     """
-    plan = checked_plan(chain, order, frequency_order, coordinate_order, None, None)
+    cuts: dict[str, Any] = {
+        "frequency_order": frequency_order,
+        "coordinate_order": coordinate_order,
+    }
+    orders = Orders(order, **cuts)
+    require_chain(chain)
+    require_shifts(orders, chain)
     modes = tuple(sorted(seed_modes(seeds, chain.N)))
-    plan.check_size(chain, modes)
+    require_size(chain, modes, orders.order, None)
     start = positive_by_seed(chain, "start_amplitudes", start_amplitudes)
     if tuple(start) != modes:
         raise InputError(
@@ -227,7 +235,7 @@ def appendix_a_members(
             "a positive number",
             "take a part of the linear specific energy",
         )
-    family = _Family(chain, modes, plan)
+    family = _Family(chain, modes, orders)
     if after is not None:
         return family.continued(*_last_two(family, after))
     return family.members(np.array([float(a) for a in start.values()]), step)
@@ -251,7 +259,7 @@ def members_between(
     start_amplitudes : of which a multiple has the first energy. The others as for
     `appendix_a_members`. Raises NoFurtherMember.
     """
-    family = _Family(chain, seeds, checked_plan(chain, order, None, None, None, None))
+    family = _Family(chain, seeds, Orders(order))
     if after is None:
         trial = family.trial_at(np.array([start_amplitudes[q] for q in seeds]), begin)
         steps = family.begun(trial, increment)
@@ -276,15 +284,9 @@ def member_at(
     Raises NoFurtherMember.
     """
     series = before.torus.origin.series
-    plan = checked_plan(
-        series.chain,
-        series.order,
-        before.torus.origin.frequency_order,
-        before.torus.origin.order,
-        None,
-        None,
-    )
-    return _Family(series.chain, series.seeds, plan).between(before, last, level)
+    origin = before.torus.origin
+    orders = Orders(series.order, origin.frequency_order, origin.order)
+    return _Family(series.chain, series.seeds, orders).between(before, last, level)
 
 
 def _last_two(family: _Family, after: object) -> tuple[AppendixAMember, AppendixAMember]:
@@ -335,10 +337,10 @@ def _bracket(excess: Callable[[float], float]) -> tuple[float, float]:
 class _Family:
     """The steps of the algorithm for one chain, its seeds and orders; shifts are omega - Omega."""
 
-    def __init__(self, chain: Chain, seeds: tuple[int, ...], plan: Plan) -> None:
-        self.chain, self.seeds, self.plan = chain, seeds, plan
+    def __init__(self, chain: Chain, seeds: tuple[int, ...], orders: Orders) -> None:
+        self.chain, self.seeds, self.orders = chain, seeds, orders
         self.linear = chain.frequencies()[np.array(seeds) - 1]
-        self.search = Frequencies(chain, seeds, plan.frequency_order)
+        self.search = Frequencies(chain, seeds, orders.frequency_order)
 
     def members(self, trial: Floats, increment: float | None) -> Iterator[AppendixAMember]:
         """Initialization, (i) to (iv), then the iteration."""
@@ -511,13 +513,13 @@ class _Family:
     def _root(self, shift: Floats, guess: Floats) -> Floats:
         """A^2 at shifts of the frequencies."""
         series = lindstedt(
-            self.chain, self.seeds, self._exact(shift), self.plan.frequency_order
+            self.chain, self.seeds, self._exact(shift), self.orders.frequency_order
         )
-        return np.asarray(root_squares(series, self.plan.frequency_order, guess)[0])
+        return np.asarray(root_squares(series, self.orders.frequency_order, guess)[0])
 
     def _torus(self, shift: Floats, guess: Floats) -> Torus[FromSeries]:
-        series = lindstedt(self.chain, self.seeds, self._exact(shift), self.plan.order)
-        K, coordinates = self.plan.frequency_order, self.plan.coordinate_order
+        series = lindstedt(self.chain, self.seeds, self._exact(shift), self.orders.order)
+        K, coordinates = self.orders.frequency_order, self.orders.coordinate_order
         return solve_amplitudes(
             series,
             frequency_order=K,
@@ -552,7 +554,7 @@ class _Family:
         try:
             return self.search.exact(shift / self.linear)
         except NotFound as failure:
-            raise DidNotConverge(self.plan.frequency_order, {}, float("nan")) from failure
+            raise DidNotConverge(self.orders.frequency_order, {}, float("nan")) from failure
 
     def _by_seed(self, values: Floats) -> dict[int, float]:
         return dict(zip(self.seeds, map(float, values), strict=True))

@@ -11,10 +11,10 @@ import numpy as np
 from symfpu.breathers.from_rest import FIRST_SHIFT, FIRST_STRETCH
 from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
-from symfpu.families.extrapolation import coefficients_at
 from symfpu.families.members import Level, Member, linear_by_mode
 from symfpu.files.progress import Progress
 from symfpu.refinement.conditions import Amplitude, Condition, ratio_conditions
+from symfpu.refinement.extrapolation import coefficients_at
 from symfpu.refinement.refined_torus import TOLERANCE, Newton, NoTorus, refined_torus
 from symfpu.refinement.tori import refine
 from symfpu.tori.short_series import shifts_by_squares, short_series

@@ -13,11 +13,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from symfpu.families.extrapolation import extrapolated
 from symfpu.families.members import Level, linear_by_mode
 from symfpu.families.whole import Whole, require_one_curve, whole
 from symfpu.files.progress import Progress
 from symfpu.refinement.conditions import Condition, Plane, ratio_conditions
+from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats
 from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from symfpu.breathers.floquet import floquet
 from symfpu.families.breather_walk import stability_between
 from symfpu.families.continuation import Way
-from symfpu.families.extrapolation import extrapolated
 from symfpu.families.members import Event, Level, Member, member
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_way import NormalWay
 from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.refinement.conditions import Crossing
+from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.refined_torus import Newton, NoTorus

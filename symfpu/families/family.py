@@ -14,7 +14,6 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
-from symfpu.families.extrapolation import extrapolated
 from symfpu.families.members import Event, Level, Member, members_grid
 from symfpu.families.normal_events import NormalEvent
 from symfpu.frames.attributes import attributes
@@ -27,8 +26,10 @@ from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, exact
 from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
+from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.refined_torus import Newton, refined_torus
 from symfpu.refinement.tori import refine
+from symfpu.tori.energy import Energy
 from symfpu.tori.torus import Torus
 
 # in the order in which they are told, as one and as several
@@ -167,9 +168,8 @@ def member_at_energy(found: Family, energy: Number, *, harmonic: bool) -> Torus[
         raise NotInFamily(level.name, value, (least, largest), found.ending)
     distances = np.abs(np.log(known / value))
     nearest = found.members[int(np.argmin(distances))].torus
-    return refine(
-        nearest, energy=energy, harmonic=harmonic, energy_ratio=found.energy_ratio
-    )
+    asked = Energy(energy, harmonic=harmonic, energy_ratio=found.energy_ratio)
+    return refine(nearest, energy=asked)
 
 
 @public

@@ -18,7 +18,7 @@ from symfpu.frames.recorded import Recorded
 from symfpu.frames.table import Table
 from symfpu.frames.tabled import Tabled
 from symfpu.normal.frequencies import NormalFrequencies
-from symfpu.refinement.conditions import Condition, Energy
+from symfpu.refinement.conditions import Condition, EnergyLevel
 from symfpu.refinement.refined_torus import Newton
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
@@ -75,7 +75,7 @@ class Level:
     @property
     def condition(self) -> Condition:
         """For Newton's method."""
-        return Energy(np.longdouble(self.energy), self.harmonic)
+        return EnergyLevel(np.longdouble(self.energy), self.harmonic)
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,8 +36,9 @@ class NormalFamily(Shown, Gridded):
     members : NormalModes of each torus, in order. parts : 0 .. 1, where each is. events : on the
     way.
 
-    >>> from symfpu import Chain, breather_at_amplitude, normal_family
-    >>> breather = breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")
+    >>> import symfpu
+    >>> from symfpu import Chain, normal_family
+    >>> breather = symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.1"})
     >>> normal_family(breather, {2: "0.2"}, members=3)
     NormalFamily(N=4, beta=1, 3 members, A_2=0.1 .. 0.2, stable, no events)
     """
@@ -126,8 +127,9 @@ def normal_family(
     Raises InputError, also for a folder that holds another line; NoTorus and NoNormalModes where a
     member has none; RunInterrupted, a KeyboardInterrupt, where there is a folder.
 
-    >>> from symfpu import Chain, breather_at_amplitude, normal_family
-    >>> breather = breather_at_amplitude(Chain(N=4, alpha="0.5"), 2, "0.5")
+    >>> import symfpu
+    >>> from symfpu import Chain, normal_family
+    >>> breather = symfpu.torus(Chain(N=4, alpha="0.5"), (2,), amplitudes={2: "0.5"})
     >>> normal_family(breather, {2: "1"}, members=2, modes=[1])
     NormalFamily(N=4, alpha=0.5, 2 members, A_2=0.5 .. 1, ...)
     """

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.families.extrapolation import extrapolated
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import Between, followed_modes
 from symfpu.refinement.conditions import AmplitudeLine, Condition
+from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.refined_torus import NoTorus, refined_torus
 from symfpu.refinement.tori import refine
 from symfpu.tori.torus import Torus

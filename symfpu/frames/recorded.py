@@ -25,8 +25,11 @@ class Recorded:
         need more than 15 digits are strings that lose none; measures of size (residuals, errors)
         are numbers of 15 digits. The keys are in docs/records.md.
 
-        >>> from symfpu import Chain, torus_at_energy
-        >>> found = torus_at_energy(Chain(N=4, alpha=1), (1,), "0.001", order=2).record()
+        >>> import symfpu
+        >>> from symfpu import Chain
+        >>> chain = Chain(N=4, alpha=1)
+        >>> torus = symfpu.torus(chain, (1,), energy="0.001", method="series", order=2)
+        >>> found = torus.record()
         >>> found["kind"], found["origin"], found["N"], found["alpha"], float(found["energy"])
         ('Torus', 'FromSeries', 4, '1', 0.001)
         """

@@ -77,8 +77,9 @@ def spectrum_floor(solution: Torus) -> NDArray[np.float64]:
     Next to a divisor that is zero it is as large as the inverse says, or infinite. Raises
     InputError. Ours.
 
-    >>> from symfpu import Chain, breather_at_energy
-    >>> breather = breather_at_energy(Chain(N=32, alpha="0.33"), 1, "5e-5")
+    >>> import symfpu
+    >>> from symfpu import Chain
+    >>> breather = symfpu.torus(Chain(N=32, alpha="0.33"), (1,), energy="5e-5")
     >>> int(sum(breather.average_spectrum() > spectrum_floor(breather)))  # modes that are known
     12
     """
@@ -93,8 +94,9 @@ def coefficient_errors(solution: Torus) -> NDArray[np.float64]:
     solution : a torus or periodic orbit of any kind. Dimensionless; what they count on is said in
         `spectrum_floor`. Raises InputError. Ours.
 
-    >>> from symfpu import Chain, breather_at_energy
-    >>> breather = breather_at_energy(Chain(N=32, alpha="0.33"), 1, "5e-5")
+    >>> import symfpu
+    >>> from symfpu import Chain
+    >>> breather = symfpu.torus(Chain(N=32, alpha="0.33"), (1,), energy="5e-5")
     >>> bool(coefficient_errors(breather).max() < 1e-11 * breather.amplitude)
     True
     """

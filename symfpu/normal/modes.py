@@ -93,8 +93,9 @@ class NormalMode:
         the torus makes of sigma. No proof.
     rounding : of sigma, about: much where two directions nearly collide. Ours.
 
-    >>> from symfpu import Chain, breather_at_amplitude, normal_modes
-    >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
+    >>> import symfpu
+    >>> from symfpu import Chain, normal_modes
+    >>> found = normal_modes(symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.1"}))
     >>> found.mode(3)
     NormalMode(sigma_3=1.854..., elliptic, signature +1, residual ...)
     """
@@ -184,8 +185,9 @@ class NormalModes(Shown, Gridded):
         that rounding hides whether they are stable. All is dimensionless.
     missing : by mode, why one could not be told from others.
 
-    >>> from symfpu import Chain, breather_at_amplitude, normal_modes
-    >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
+    >>> import symfpu
+    >>> from symfpu import Chain, normal_modes
+    >>> found = normal_modes(symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.1"}))
     >>> found
     NormalModes(N=4, beta=1, omega_2=1.41..., stable, sigma_1=0.768..., sigma_3=1.854...,
     residual ...)

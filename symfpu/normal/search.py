@@ -86,10 +86,11 @@ def normal_modes(
     in `missing`. Raises InputError, and NoNormalModes for such a mode that `modes` names, or if
     there is no other.
 
-    >>> from symfpu import Chain, refine, torus_at_amplitudes
+    >>> import symfpu
+    >>> from symfpu import Chain, refine
     >>> amplitudes = {1: "0.2", 2: "0.1"}
-    >>> guess = torus_at_amplitudes(Chain(N=4, alpha="0.3"), amplitudes, order=4)
-    >>> round(normal_modes(refine(guess, amplitudes=amplitudes)).frequencies[3], 9)
+    >>> torus = symfpu.torus(Chain(N=4, alpha="0.3"), (1, 2), amplitudes=amplitudes)
+    >>> round(normal_modes(torus).frequencies[3], 9)
     1.847...
     """
     torus = checked_solution(solution)

@@ -62,8 +62,9 @@ def solve_normal_frequency(
     NoNormalModes where no real number near the guess solves the equation, as in a hyperbolic
     direction.
 
-    >>> from symfpu import Chain, breather_at_amplitude, normal_modes, solve_normal_frequency
-    >>> breather = breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")
+    >>> import symfpu
+    >>> from symfpu import Chain, normal_modes, solve_normal_frequency
+    >>> breather = symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.1"})
     >>> found = solve_normal_frequency(breather, 3, 6)
     >>> abs(found.sigma - normal_modes(breather).frequencies[3]) < 1e-12
     True

@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.at_energy import breather_at_energy
+from symfpu.breathers.at_energy import breather_of_energy
 from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
 from symfpu.paper.claims import Claim, judged
 from symfpu.paper.printed import PrintedTorus
 from symfpu.paper.starts import period_digits, printed_row, printed_torus
+from symfpu.tori.energy import Energy
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
 
@@ -75,7 +76,7 @@ def closing(row: PrintedTorus, torus: Torus[FromSeries]) -> Closing:
 
 def _exists(chain: Chain, energy: float) -> bool:
     try:
-        found = breather_at_energy(chain, ENERGY_SEED, repr(energy))
+        found = breather_of_energy(chain, ENERGY_SEED, Energy(repr(energy)))
     except SymfpuError:
         return False
     return abs(float(found.energy()) / energy - 1) < SAME_ENERGY

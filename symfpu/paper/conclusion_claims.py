@@ -12,13 +12,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.at_energy import breather_at_energy
+from symfpu.breathers.at_energy import breather_of_energy
 from symfpu.chain.chain import Chain
 from symfpu.localization.laws import profile_law
 from symfpu.localization.profiles import fpu_trajectory
 from symfpu.paper.claims import Claim, judged
 from symfpu.series.lindstedt import lindstedt
 from symfpu.spectral.mapping import FrequencyMap, frequency_map
+from symfpu.tori.energy import Energy
 from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
@@ -61,7 +62,7 @@ def distances() -> tuple[tuple[str, ...], list[float]]:
 
 
 def _distance(chain: Chain, energy: str) -> float:
-    breather: Torus = breather_at_energy(chain, 1, energy)
+    breather: Torus = breather_of_energy(chain, 1, Energy(energy))
     Q, P = breather.state()
     amplitude = repr(float(breather.amplitudes[1]))
     start, momenta = fpu_trajectory(chain, {1: amplitude})
@@ -107,7 +108,7 @@ def slopes() -> tuple[list[float], list[float]]:
     breathers, laws = [], []
     for seed in SLOPE_SEEDS:
         energy = repr(SLOPE_ENERGY * chain.N)
-        breather = breather_at_energy(chain, seed, energy)
+        breather = breather_of_energy(chain, seed, Energy(energy))
         modes = seed * np.arange(1, SLOPE_GROUPS + 1)
         kappa = modes / chain.N
         spectrum = np.asarray(breather.average_spectrum(), dtype=float)[modes - 1]

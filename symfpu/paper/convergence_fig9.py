@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import breather_at_amplitude, periodic_orbit
+from symfpu.breathers.balance import breather_of_amplitude, breather_of_frequency
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.family import Family
@@ -21,6 +21,7 @@ from symfpu.families.members import Member
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import Number
 from symfpu.paper.printed import FIG9_BREATHER
+from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import frequency_orders, solve_amplitudes
@@ -94,8 +95,8 @@ def breather_study(progress: Progress = unheard) -> BreatherStudy:
     printed = float(FIG9_BREATHER.amplitudes[0])
     amplitudes = {K: float(a[0]) for K, a in torus.origin.history.items()}
     return BreatherStudy(
-        orbit=periodic_orbit(chain, seed, rates[0]),
-        at_printed=breather_at_amplitude(chain, seed, printed),
+        orbit=breather_of_frequency(chain, seed, rates[0]),
+        at_printed=breather_of_amplitude(chain, seed, printed),
         amplitudes=amplitudes,
         singularity=singularity,
         spread=spread,
@@ -132,8 +133,7 @@ def scheme_limit(
     omega = limit_frequency(chain, seed, rates[beyond - 1], rates[beyond])
     last = chosen[beyond - 1].torus
     assert isinstance(last, Torus)
-    by_harmonic = np.argsort(last.harmonics[:, 0])
-    orbit = periodic_orbit(chain, seed, omega, last.cosines[by_harmonic])
+    orbit = refine(last, frequencies=(omega,))
     amplitudes = tuple(m.amplitudes[seed] for m in chosen)
     return SchemeLimit(orbit, tuple(rates), amplitudes, tuple(ends), found)
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from symfpu.breathers.balance import periodic_orbit
+from symfpu.breathers.balance import breather_of_frequency
 from symfpu.errors import SymfpuError
 from symfpu.files.progress import NO_FRACTION, Progress, labelled, unheard
 from symfpu.paper.printed import PrintedTorus
@@ -213,7 +213,7 @@ def _guess(printed: PrintedTorus, order: int, tell: Progress) -> Torus:
     chain, seeds, rates = printed.chain, printed.seeds, printed.frequencies
     if len(seeds) == 1:
         tell("periodic orbit", NO_FRACTION)
-        return periodic_orbit(chain, seeds[0], rates[0])
+        return breather_of_frequency(chain, seeds[0], rates[0])
     tell("short series", NO_FRACTION)
     series = lindstedt(chain, seeds, rates, min(order, printed.order))
     return solve_amplitudes(series)

@@ -16,7 +16,9 @@ from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.printed import FIG6_CHAIN, FIG6_WIDTH
 from symfpu.reports.tables import markdown_table
-from symfpu.tori.at_energy import torus_at_energy
+from symfpu.tori.at_energy import series_at_energy
+from symfpu.tori.energy import Energy
+from symfpu.tori.orders import Orders
 
 PLACES = {"a": "1/4", "b": "1/2", "c": "3/4"}  # of the packets, kappa_0 by panel
 
@@ -142,7 +144,8 @@ def spectrum_claim(place: str) -> Claim:
     quarters = int(place[0]) * (4 // int(place[2]))
     center = quarters * chain.N // 4
     seeds = (center - 1, center, center + 1)
-    torus = torus_at_energy(chain, seeds, SPECTRUM_ENERGY, order=SPECTRUM_ORDER)
+    energy, orders = Energy(SPECTRUM_ENERGY), Orders(SPECTRUM_ORDER)
+    torus = series_at_energy(chain, seeds, energy, orders)
     sequence = excitation_sequence(chain.N, seeds, SPECTRUM_ORDER)
     return pattern_claim(place, sequence, torus.average_spectrum() / float(torus.energy()))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import periodic_orbit
+from symfpu.breathers.balance import breather_of_frequency
 from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import Progress
 from symfpu.localization.profiles import fpu_trajectory
@@ -57,7 +57,9 @@ def figure7(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     row = printed_row("Fig. 7")
     chain = row.chain
     torus = printed_torus(row)
-    newton = refine(periodic_orbit(chain, 1, row.frequencies[0]), digits=NEWTON_DIGITS)
+    newton = refine(
+        breather_of_frequency(chain, 1, row.frequencies[0]), digits=NEWTON_DIGITS
+    )
     fpu = fpu_trajectory(chain, printed_amplitudes(row))
     starts: dict[str, Starting | tuple[Floats, Floats]] = {
         "PLn": torus,

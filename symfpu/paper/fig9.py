@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.action_angle.foretold import ForetoldIndices
-from symfpu.breathers.balance import periodic_orbit
+from symfpu.breathers.balance import breather_of_frequency
 from symfpu.dynamics.dimension import TorusDimension
 from symfpu.dynamics.orbits import Orbit
 from symfpu.figures.panels import Panel
@@ -88,7 +88,7 @@ def figure9(folder: Path, progress: Progress, *, full: bool = False) -> PaperFig
     chain = row.chain
     progress("fig9: series", NO_FRACTION)
     torus = printed_torus(row)
-    newton = refine(periodic_orbit(chain, 1, row.frequencies[0]), digits=DIGITS)
+    newton = refine(breather_of_frequency(chain, 1, row.frequencies[0]), digits=DIGITS)
     orbits = _trajectories(row, progress)
     looks = AVERAGING_LOOKS
     exact = integrated_orbit("fig9 breather", chain, newton, TIME, progress, samples=looks)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import periodic_orbit
+from symfpu.breathers.balance import breather_of_frequency
 from symfpu.chain.chain import Chain
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.dynamics.orbits import Orbit
@@ -188,11 +188,11 @@ def _orbit(
 def fold_study(chain: Chain) -> FoldStudy:
     """Breathers by harmonic balance, beside the ends of their series."""
     (seed,) = FIG9_BREATHER.seeds
-    orbits = [periodic_orbit(chain, seed, omega) for omega in BREATHER_FREQUENCIES]
+    orbits = [breather_of_frequency(chain, seed, omega) for omega in BREATHER_FREQUENCIES]
     ends = [series_end(chain, seed, omega) for omega in BREATHER_FREQUENCIES]
     low, high = LIMIT_BRACKET
     omega = limit_frequency(chain, seed, low, high)
-    touching = periodic_orbit(chain, seed, omega)
+    touching = breather_of_frequency(chain, seed, omega)
     return FoldStudy(
         frequencies=np.array([float(orbit.frequency) for orbit in orbits]),
         amplitudes=np.array([orbit.amplitude for orbit in orbits]),

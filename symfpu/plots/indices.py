@@ -70,9 +70,10 @@ def foretold(
     Triangles on the upper edge are the times from which G_k has the slope of the torus, which is
     in the legend; rings are some of the samples. Returns the axes. Raises InputError.
 
+    >>> import symfpu
     >>> from matplotlib.figure import Figure
-    >>> from symfpu import Chain, breather_at_amplitude, foretold_indices
-    >>> found = foretold_indices(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.4"), 1e6)
+    >>> from symfpu import Chain, foretold_indices
+    >>> found = foretold_indices(symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.4"}), 1e6)
     >>> foretold(found, Figure().add_subplot()).get_title()
     'regular, dimension 1'
     """

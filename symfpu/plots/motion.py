@@ -67,9 +67,10 @@ def time_series(
     Samples that are not evenly spaced get a logarithmic axis of time. Energies below EPS^2 of
     their sum are shaded: in doubles they are rounding. Returns the axes. Raises InputError.
 
+    >>> import symfpu
     >>> from matplotlib.figure import Figure
-    >>> from symfpu import Chain, breather_at_energy
-    >>> breather = breather_at_energy(Chain(N=8, alpha="0.33"), 1, "5e-5")
+    >>> from symfpu import Chain
+    >>> breather = symfpu.torus(Chain(N=8, alpha="0.33"), (1,), energy="5e-5")
     >>> ax = time_series(breather, Figure().add_subplot(), modes=(1, 2))
     >>> len(ax.get_lines())
     2
@@ -121,9 +122,10 @@ def space_time(
     White is rest, blue and red are of one size on both sides. Returns the axes, which have a
     scale of colours beside them. Raises InputError.
 
+    >>> import symfpu
     >>> from matplotlib.figure import Figure
-    >>> from symfpu import Chain, breather_at_energy
-    >>> breather = breather_at_energy(Chain(N=8, alpha="0.33"), 1, "5e-5")
+    >>> from symfpu import Chain
+    >>> breather = symfpu.torus(Chain(N=8, alpha="0.33"), (1,), energy="5e-5")
     >>> space_time(breather, Figure().add_subplot(), times=range(40)).get_xlabel()
     '$j$'
     """
@@ -160,9 +162,10 @@ def animation(
     Returns matplotlib's FuncAnimation: `.save("chain.gif")` writes it, `.to_jshtml()` is for
     notebooks. Keep it in a variable: it ends with the last reference. Ours. Raises InputError.
 
+    >>> import symfpu
     >>> from matplotlib.figure import Figure
-    >>> from symfpu import Chain, breather_at_energy
-    >>> breather = breather_at_energy(Chain(N=8, alpha="0.33"), 1, "5e-5")
+    >>> from symfpu import Chain
+    >>> breather = symfpu.torus(Chain(N=8, alpha="0.33"), (1,), energy="5e-5")
     >>> moving = animation(breather, Figure().add_subplot(), times=range(2))
     >>> moving.to_jshtml().count("data:image/png")
     2

@@ -25,9 +25,10 @@ def normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     Of hyperbolic modes the real part is shown; the title has the rate of growth. Crosses are the
     closed shifts of second order, with fixed ends. Returns the axes. Raises InputError.
 
+    >>> import symfpu
     >>> from matplotlib.figure import Figure
-    >>> from symfpu import Chain, breather_at_amplitude, normal_modes
-    >>> found = normal_modes(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
+    >>> from symfpu import Chain, normal_modes
+    >>> found = normal_modes(symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.1"}))
     >>> normal_frequencies(found, Figure().add_subplot()).get_title()
     'stable'
     """

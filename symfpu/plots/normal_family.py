@@ -38,9 +38,10 @@ def family_normal_frequencies(result: Any, ax: Axes | None = None) -> Axes:
     diamonds; vertical lines are events: broken where stability changes, dotted
     where a resonance is crossed. Returns the axes. Raises InputError.
 
+    >>> import symfpu
     >>> from matplotlib.figure import Figure
-    >>> from symfpu import Chain, breather_at_amplitude, normal_family
-    >>> breather = breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1")
+    >>> from symfpu import Chain, normal_family
+    >>> breather = symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.1"})
     >>> found = normal_family(breather, {2: "0.2"}, members=2)
     >>> family_normal_frequencies(found, Figure().add_subplot()).get_title()
     '2 tori, stable'

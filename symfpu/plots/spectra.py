@@ -73,9 +73,10 @@ def spectrum(
     the number of kicks, whose roundings add at random, of the sum of all energies. Returns the
     axes. Raises InputError.
 
+    >>> import symfpu
     >>> from matplotlib.figure import Figure
-    >>> from symfpu import Chain, breather_at_energy
-    >>> breather = breather_at_energy(Chain(N=8, alpha="0.33"), 1, "5e-5")
+    >>> from symfpu import Chain
+    >>> breather = symfpu.torus(Chain(N=8, alpha="0.33"), (1,), energy="5e-5")
     >>> spectrum(breather, Figure().add_subplot()).get_yscale()
     'log'
     """

@@ -36,9 +36,10 @@ def multipliers(result: Any, ax: Axes | None = None) -> Axes:
     Multipliers beyond a modulus of three stand at the edge, with their number. Returns the axes.
     Raises InputError.
 
+    >>> import symfpu
     >>> from matplotlib.figure import Figure
-    >>> from symfpu import Chain, breather_at_amplitude, floquet
-    >>> found = floquet(breather_at_amplitude(Chain(N=4, beta=1), 2, "0.1"))
+    >>> from symfpu import Chain, floquet
+    >>> found = floquet(symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.1"}))
     >>> multipliers(found, Figure().add_subplot()).get_title()
     'stable'
     """

@@ -21,7 +21,7 @@ AROUND = 120  # steps of each of them, even: faces of a surface take two
 LEAST_SPAN = 0.1  # of the amplitudes, that the axes of a section have at least
 TURNS = 60  # of an orbit on a torus of more angles
 SOLUTION = "a solution: a torus or a breather"
-ADVICE = "pass what solve_amplitudes, refine or periodic_orbit gave"
+ADVICE = "pass what torus, solve_amplitudes or refine gave"
 
 
 def section(
@@ -129,9 +129,10 @@ def torus(
     A torus of two angles is a surface ruled by orbits, a breather a closed curve; of one of more
     angles an orbit of sixty turns is seen. Returns the axes. Raises InputError. Ours.
 
+    >>> import symfpu
     >>> from matplotlib.figure import Figure
-    >>> from symfpu import Chain, breather_at_energy
-    >>> breather = breather_at_energy(Chain(N=8, alpha="0.33"), 1, "5e-5")
+    >>> from symfpu import Chain
+    >>> breather = symfpu.torus(Chain(N=8, alpha="0.33"), (1,), energy="5e-5")
     >>> ax = Figure().add_subplot(projection="3d")
     >>> torus(breather, ax, modes=(1, 2, 3)).get_zlabel()
     '$Q_{3}$'

@@ -214,7 +214,7 @@ class EnergyRatio:
 
 
 @dataclass(frozen=True)
-class Energy:
+class EnergyLevel:
     """H, or with `harmonic` the harmonic energy sum E_q.
 
     With fixed ends at the angles zero, of a ring averaged over the angles.

@@ -76,11 +76,12 @@ class IterativeRefinement(Origin):
         the inverse, for all small divisors.
     sweeps : steps of refinement, those with fewer harmonics too.
 
-    >>> from symfpu import Chain, refine, torus_at_amplitudes
-    >>> guess = torus_at_amplitudes(Chain(N=4, beta="0.5"), {1: "0.1", 2: "0.1"}, order=3)
-    >>> refine(guess, digits=30)
-    Torus(N=4, beta=0.5, omega_1=0.76711..., omega_2=1.41631..., A_1=0.0999...,
-    A_2=0.1000..., 30 digits, H=..., ... harmonics, residual below ..., error about ...)
+    >>> import symfpu
+    >>> from symfpu import Chain, refine
+    >>> given = {1: "0.1", 2: "0.1"}
+    >>> symfpu.torus(Chain(N=4, beta="0.5"), (1, 2), amplitudes=given, digits=30)
+    Torus(N=4, beta=0.5, omega_1=0.76711..., omega_2=1.41631..., A_1=0.1, A_2=0.1,
+    30 digits, H=..., ... harmonics, residual below ..., error about ...)
     """
 
     name: ClassVar[str] = "iterative refinement"

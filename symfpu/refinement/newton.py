@@ -124,10 +124,12 @@ def newton(
     progress: Progress = unheard,
     *,
     aim: Aim = SETTLED,
+    growth: float = GROWTH,
 ) -> Iterate:
     """The torus near a guess that meets the conditions.
 
-    An iterate with `failure` where there is none, the best one met.
+    growth : factor by which amplitudes may change from those of the guess. An iterate with
+    `failure` where there is none, the best one met.
     """
     steps: list[NewtonStep] = []
     best = (np.inf, cosines, shifts)
@@ -166,7 +168,7 @@ def newton(
         steps.append(NewtonStep(residual, relative, violation, products))
         line = f"step {len(steps)}: residual {residual:.1e}, change {relative:.1e}"
         progress(line, NO_FRACTION)
-        if runs_away := _runs_away(sizes, _sizes(equation, cosines)):
+        if runs_away := _runs_away(sizes, _sizes(equation, cosines), growth):
             return failed(runs_away)
         if left > INEXACT:
             continue
@@ -189,11 +191,11 @@ def _sizes(equation: InvarianceEquation, cosines: Floats) -> dict[str, float]:
     return {"the largest coefficient": largest} | {f"A_{q}": float(a) for q, a in by_seed}
 
 
-def _runs_away(sizes: dict[str, float], reached: dict[str, float]) -> str:
+def _runs_away(sizes: dict[str, float], reached: dict[str, float], growth: float) -> str:
     """The first size that has left that of the guess, in words; empty where there is none."""
     for name, old in sizes.items():
         new = reached[name]
-        if not old / GROWTH < new < old * GROWTH:
+        if not old / growth < new < old * growth:
             return f"{name} goes from {old:.3g} to {new:.3g}"
     return ""
 

@@ -19,17 +19,18 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import mpf
 from symfpu.numbers.long_doubles import long
-from symfpu.numbers.typed import Number, energy_of, exact
+from symfpu.numbers.typed import exact
 from symfpu.refinement.conditions import (
     Amplitude,
     Condition,
-    Energy,
+    EnergyLevel,
     FrequencyShift,
     Start,
     ratio_conditions,
 )
 from symfpu.refinement.guesses import frequency_shifts, moderate_by_seed, numbers_by_seed
 from symfpu.series.arguments import frequencies_of
+from symfpu.tori.energy import Energy, asked_energy
 from symfpu.tori.torus import Torus, require_fixed_solution
 
 Exact = tuple[Fraction, ...]
@@ -46,8 +47,12 @@ class Prescribed(ABC):
     held_amplitudes: Exact | None = None
 
     @abstractmethod
-    def conditions(self) -> list[Condition]:
-        """The conditions of Newton's method in doubles, one for each angle."""
+    def conditions(self, part: float = 1.0) -> list[Condition]:
+        """The conditions of Newton's method in doubles, one for each angle.
+
+        part : of the way from rest: of amplitudes and coordinates; of energies and of frequencies'
+        shifts it is the square.
+        """
 
     def values(self, torus: Torus) -> list[Any]:
         """What the conditions leave on a torus with digits; 0 where their numbers are held."""
@@ -67,8 +72,9 @@ class Frequencies(Prescribed):
         self.chain, self.seeds = chain, seeds
         self.held_frequencies = frequencies
 
-    def conditions(self) -> list[Condition]:
+    def conditions(self, part: float = 1.0) -> list[Condition]:
         shifts = frequency_shifts(self.chain, self.seeds, self.held_frequencies)
+        shifts = shifts * np.longdouble(part) ** 2
         return [FrequencyShift(place, shift) for place, shift in enumerate(shifts)]
 
 
@@ -80,8 +86,9 @@ class Amplitudes(Prescribed):
     def __init__(self, amplitudes: Exact) -> None:
         self.held_amplitudes = amplitudes
 
-    def conditions(self) -> list[Condition]:
-        return [Amplitude(place, long(A)) for place, A in enumerate(self.held_amplitudes)]
+    def conditions(self, part: float = 1.0) -> list[Condition]:
+        amplitudes = [long(A) * np.longdouble(part) for A in self.held_amplitudes]
+        return [Amplitude(place, A) for place, A in enumerate(amplitudes)]
 
 
 @dataclass(frozen=True)
@@ -94,8 +101,9 @@ class AtEnergy(Prescribed):
     ratio: Exact
     of_energies: bool
 
-    def conditions(self) -> list[Condition]:
-        energy = Energy(long(self.energy), self.harmonic)
+    def conditions(self, part: float = 1.0) -> list[Condition]:
+        level = long(self.energy) * np.longdouble(part) ** 2
+        energy = EnergyLevel(level, self.harmonic)
         ratio = {q: float(x) for q, x in zip(self.seeds, self.ratio, strict=True)}
         return [energy, *ratio_conditions(self.seeds, ratio, energies=self.of_energies)]
 
@@ -140,10 +148,10 @@ class AtStart(Prescribed):
     def _size(self) -> Fraction:
         return max(abs(x) for x in self.numbers)
 
-    def conditions(self) -> list[Condition]:
-        phases, size = tuple(map(float, self.phases)), float(self._size)
-        values = enumerate(self.numbers)
-        return [Start(place, long(x), phases, size) for place, x in values]
+    def conditions(self, part: float = 1.0) -> list[Condition]:
+        phases, size = tuple(map(float, self.phases)), float(self._size) * part
+        values = enumerate(long(x) * np.longdouble(part) for x in self.numbers)
+        return [Start(place, x, phases, size) for place, x in values]
 
     def values(self, torus: Torus) -> list[Any]:
         found = torus.Q(0.0)
@@ -155,17 +163,11 @@ class AtStart(Prescribed):
         return {**super().by_name(), "start": self.numbers, "phases": phases}
 
 
-def prescribed_by(
-    torus: Torus,
-    given: Mapping[str, Any],
-    *,
-    harmonic: bool,
-    ratios: Mapping[str, Mapping[int, Number] | None],
-) -> Prescribed:
+def prescribed_by(torus: Torus, given: Mapping[str, Any]) -> Prescribed:
     """What was typed to fix a torus near a given one; nothing typed: its own frequencies.
 
-    given : frequencies, amplitudes, energy, start, as of `refine`, None where left out. ratios :
-    amplitude_ratio and energy_ratio. Raises InputError.
+    given : frequencies, amplitudes, energy, start, as of `refine`, None where left out. Raises
+    InputError.
     """
     typed = {name: value for name, value in given.items() if value is not None}
     if len(typed) > 1:
@@ -173,10 +175,8 @@ def prescribed_by(
         raise InputError(
             names, ", ".join(typed), "at most one of them", "leave the others out"
         )
-    _require_flag(harmonic)
     if "energy" in typed:
-        return _at_energy(torus, typed["energy"], harmonic=bool(harmonic), ratios=ratios)
-    _require_no_energy(harmonic, ratios)
+        return _at_energy(torus, asked_energy(typed["energy"]))
     if "amplitudes" in typed:
         values = typed["amplitudes"]
         by_seed = moderate_by_seed("amplitudes", values, torus.seeds, signed=True)
@@ -189,52 +189,21 @@ def prescribed_by(
     return Frequencies(torus.chain, torus.seeds, omega)
 
 
-def _require_flag(harmonic: object) -> None:
-    if not isinstance(harmonic, (bool, np.bool_)):
-        allowed = "True for sum E_q, False for H"
-        raise InputError("harmonic", harmonic, allowed, "say which energy is meant")
+def _at_energy(torus: Torus, energy: Energy) -> AtEnergy:
+    of_energies = energy.energy_ratio is not None
+    ratio = tuple(_ratio(torus, energy).values())
+    return AtEnergy(energy.exact, energy.harmonic, torus.seeds, ratio, of_energies)
 
 
-def _require_no_energy(
-    harmonic: bool, ratios: Mapping[str, Mapping[int, Number] | None]
-) -> None:
-    """InputError for what says more about an energy that was not given."""
-    typed = [name for name, ratio in ratios.items() if ratio is not None]
-    names = [*typed, "harmonic"] if harmonic else typed
-    if names:
-        value = True if names[0] == "harmonic" else ratios[names[0]]
-        raise InputError(names[0], value, "nothing without energy", "give energy, too")
-
-
-def _at_energy(
-    torus: Torus,
-    energy: Number,
-    *,
-    harmonic: bool,
-    ratios: Mapping[str, Mapping[int, Number] | None],
-) -> AtEnergy:
-    value = energy_of(energy)
-    of_energies = ratios["energy_ratio"] is not None
-    ratio = tuple(_ratio(torus, **ratios).values())
-    return AtEnergy(value, harmonic, torus.seeds, ratio, of_energies)
-
-
-def _ratio(
-    torus: Torus,
-    amplitude_ratio: Mapping[int, Number] | None,
-    energy_ratio: Mapping[int, Number] | None,
-) -> dict[int, Fraction]:
+def _ratio(torus: Torus, energy: Energy) -> dict[int, Fraction]:
     """The one that was given, by seed, or that of the amplitudes of the guess."""
-    if amplitude_ratio is not None and energy_ratio is not None:
-        allowed = "only one of amplitude_ratio and energy_ratio"
-        raise InputError("energy_ratio", energy_ratio, allowed, "leave one out")
-    if energy_ratio is not None:
+    if energy.energy_ratio is not None:
         _require_energies(torus)
-        return moderate_by_seed("energy_ratio", energy_ratio, torus.seeds, signed=False)
-    if amplitude_ratio is not None:
-        return moderate_by_seed(
-            "amplitude_ratio", amplitude_ratio, torus.seeds, signed=True
-        )
+        given = energy.energy_ratio
+        return moderate_by_seed("energy_ratio", given, torus.seeds, signed=False)
+    if energy.amplitude_ratio is not None:
+        given = energy.amplitude_ratio
+        return moderate_by_seed("amplitude_ratio", given, torus.seeds, signed=True)
     found = torus.amplitudes
     return {q: exact(float(a), "amplitude") for q, a in found.items()}
 

@@ -17,7 +17,7 @@ from symfpu.refinement.guesses import require_moderate, require_torus, shifts_of
 from symfpu.refinement.harmonics import MOST_HARMONICS, known_rows
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.refinement.newton import Iterate, NewtonStep
+from symfpu.refinement.newton import GROWTH, Iterate, NewtonStep
 from symfpu.refinement.resonances import NearResonance, near_resonances
 from symfpu.refinement.search import Search
 from symfpu.refinement.umklapp import driven_in_resonance
@@ -98,10 +98,12 @@ def refined_torus(
     tolerance: float = TOLERANCE,
     most_harmonics: int = MOST_HARMONICS,
     progress: Progress | None = None,
+    growth: float = GROWTH,
 ) -> Torus[Newton]:
     """The torus near a guess that meets as many conditions as it has angles.
 
-    With as many harmonics as the tolerance needs.
+    With as many harmonics as the tolerance needs. growth : factor by which amplitudes may change
+    from those of the guess.
     """
     require_torus(torus)
     most = integer(most_harmonics, "most_harmonics", len(torus.seeds))
@@ -115,6 +117,7 @@ def refined_torus(
         tolerance=part(tolerance, "tolerance"),
         most=most,
         tell=progress or unheard,
+        growth=growth,
     )
     solved = search(known_rows(*guess), shifts_of(torus))
     found: Torus[Newton] = solved.torus

@@ -25,7 +25,7 @@ from symfpu.refinement.harmonics import chosen_harmonics, known_rows
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.memory import least_sizes, require_memory, sizes_of
-from symfpu.refinement.newton import SETTLED, Aim, Iterate, newton
+from symfpu.refinement.newton import GROWTH, SETTLED, Aim, Iterate, newton
 from symfpu.refinement.widening import (
     MOST_COEFFICIENTS,
     MOST_STEPS,
@@ -86,8 +86,10 @@ class Search:
         tolerance: float,
         most: int,
         tell: Progress,
+        growth: float = GROWTH,
     ) -> None:
         self.result, self.torus, self.conditions = result, torus, conditions
+        self.growth = growth
         self.tolerance, self.most, self.tell = tolerance, most, tell
         self.functions = count_points(torus.chain)
 
@@ -198,7 +200,15 @@ class Search:
         shifts: Floats,
         aim: Aim = SETTLED,
     ) -> Iterate:
-        return newton(equation, self.conditions, cosines, shifts, self.tell, aim=aim)
+        return newton(
+            equation,
+            self.conditions,
+            cosines,
+            shifts,
+            self.tell,
+            aim=aim,
+            growth=self.growth,
+        )
 
     def _judged(self, equation: InvarianceEquation, found: Iterate) -> Solved:
         frequencies = _frequencies(self.torus.chain, self.torus.seeds, found.shifts)

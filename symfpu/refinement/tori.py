@@ -36,6 +36,7 @@ from symfpu.refinement.refined_torus import (
 )
 from symfpu.refinement.refinement_file import require_digits_beside
 from symfpu.refinement.umklapp import require_independent
+from symfpu.tori.energy import Energy
 from symfpu.tori.torus import Torus
 
 # the tori that are given, and what is asked of them, too
@@ -56,11 +57,8 @@ def refine(
     *,
     frequencies: Sequence[Number] | Mapping[int, Number] | None = ...,
     amplitudes: Mapping[int, Number] | None = ...,
-    energy: Number | None = ...,
+    energy: Number | Energy | None = ...,
     start: Mapping[int, Number] | None = ...,
-    harmonic: bool = ...,
-    amplitude_ratio: Mapping[int, Number] | None = ...,
-    energy_ratio: Mapping[int, Number] | None = ...,
     digits: int,
     file: Path | str | None = ...,
     tolerance: float = ...,
@@ -73,11 +71,8 @@ def refine(
     *,
     frequencies: Sequence[Number] | Mapping[int, Number] | None = ...,
     amplitudes: Mapping[int, Number] | None = ...,
-    energy: Number | None = ...,
+    energy: Number | Energy | None = ...,
     start: Mapping[int, Number] | None = ...,
-    harmonic: bool = ...,
-    amplitude_ratio: Mapping[int, Number] | None = ...,
-    energy_ratio: Mapping[int, Number] | None = ...,
     tolerance: float = ...,
     most_harmonics: int = ...,
     progress: Progress | None = ...,
@@ -88,11 +83,8 @@ def refine(
     *,
     frequencies: Sequence[Number] | Mapping[int, Number] | None = None,
     amplitudes: Mapping[int, Number] | None = None,
-    energy: Number | None = None,
+    energy: Number | Energy | None = None,
     start: Mapping[int, Number] | None = None,
-    harmonic: bool = False,
-    amplitude_ratio: Mapping[int, Number] | None = None,
-    energy_ratio: Mapping[int, Number] | None = None,
     digits: int | None = None,
     file: Path | str | None = None,
     tolerance: float = TOLERANCE,
@@ -110,11 +102,10 @@ def refine(
         ends, and unfolded.
     frequencies : omega of every seed, in their order or by seed.
     amplitudes : A_q by seed, of cos(theta_q) in Q_q.
-    energy : H, or with `harmonic` the harmonic energy sum E_q, both at the angles zero; of a ring,
-        whose waves are nowhere at rest, averaged over the angles. With `amplitude_ratio` or
-        `energy_ratio` by seed; energy_ratio is of E_q of the seeds averaged over the torus, on a
-        ring not of opposite ones, whose E_q are equal. Left out, the amplitudes keep the ratio
-        they have in `torus`.
+    energy : H at the angles zero; of a ring, whose waves are nowhere at rest, averaged over the
+        angles. Or an `Energy`, which may be the harmonic one and have a ratio of amplitudes or of
+        averaged E_q by seed, on a ring not of opposite ones, whose E_q are equal. Without a ratio
+        the amplitudes keep that which they have in `torus`.
     start : Q_q(0) by seed, 0 is allowed; phases of 0 and pi are those of an orbit that starts at
         rest. Such an orbit is on the torus but for the modes that are no seeds, whose coordinates
         at t = 0 say how far off it is. Of fixed ends.
@@ -153,8 +144,6 @@ def refine(
             "energy": energy,
             "start": start,
         },
-        harmonic=harmonic,
-        ratios={"amplitude_ratio": amplitude_ratio, "energy_ratio": energy_ratio},
     )
     how: dict[str, Any] = {
         "tolerance": tolerance,
@@ -164,7 +153,7 @@ def refine(
     if torus.travels and prescribed.held_frequencies is not None:
         require_independent(torus, prescribed.held_frequencies)
     if digits is None:
-        return _in_doubles(torus, prescribed, how)
+        return refined_in_doubles(torus, prescribed, **how)
     require_digits(torus.chain, digits, "torus")
     path = None if file is None else checkpoint_path(file)
     near = _near(torus, prescribed, how)
@@ -176,12 +165,16 @@ def refine(
         raise NoTorus(str(failure), near, near.residual(), advice) from None
 
 
-def _in_doubles(torus: Torus, prescribed: Prescribed, how: dict[str, Any]) -> Torus[Newton]:
-    """With frequencies as they were typed.
+def refined_in_doubles(
+    torus: Torus, prescribed: Prescribed, part: float = 1.0, **how: Any
+) -> Torus[Newton]:
+    """The torus near a guess, with frequencies as they were typed.
 
-    how : tolerance, most_harmonics and progress, as of `refine`.
+    part : of the way from rest. how : as of `refined_torus`.
     """
-    found = refined_torus(torus, prescribed.conditions(), **how)
+    found = refined_torus(torus, prescribed.conditions(part), **how)
+    if part < 1:
+        return found
     frequencies = prescribed.held_frequencies or found.frequencies
     return replace(found, frequencies=frequencies)
 
@@ -192,4 +185,4 @@ def _near(torus: Torus, prescribed: Prescribed, how: dict[str, Any]) -> Torus:
         doubles = torus if torus.digits is None else torus.in_doubles()
         if doubles.residual() <= how["tolerance"]:
             return torus
-    return _in_doubles(torus, prescribed, how)
+    return refined_in_doubles(torus, prescribed, **how)

@@ -98,8 +98,9 @@ class FrequencyAnalysis(Shown, Tabled):
         too short to tell from them, 0 where there are none. Every line then has such neighbours,
         and its error is this at least; orbits of 2 pi over it, and longer, tell them apart.
 
-    >>> from symfpu import Chain, frequency_analysis, integrate, refine, torus_at_amplitudes
-    >>> torus = refine(torus_at_amplitudes(Chain(N=4, alpha="0.3"), {1: "0.4"}, order=4))
+    >>> import symfpu
+    >>> from symfpu import Chain, frequency_analysis, integrate, refine
+    >>> torus = symfpu.torus(Chain(N=4, alpha="0.3"), (1,), amplitudes={1: "0.4"})
     >>> orbit = integrate(torus.chain, *torus.state(), 1000, step=0.1)
     >>> found = frequency_analysis(orbit)
     >>> found

@@ -30,8 +30,9 @@ def torus_near(analysis: FrequencyAnalysis, seeds: Sequence[int] | None = None) 
     result; `residual` says how near it is. Ours. Raises InputError for other seeds, and
     for those that name a second frequency of another mode.
 
-    >>> from symfpu import Chain, frequency_analysis, integrate, refine, torus_at_amplitudes
-    >>> torus = refine(torus_at_amplitudes(Chain(N=4, alpha="0.3"), {1: "0.4"}, order=4))
+    >>> import symfpu
+    >>> from symfpu import Chain, frequency_analysis, integrate, refine
+    >>> torus = symfpu.torus(Chain(N=4, alpha="0.3"), (1,), amplitudes={1: "0.4"})
     >>> orbit = integrate(torus.chain, *torus.state(1.7), 1000, step=0.1)
     >>> near = torus_near(frequency_analysis(orbit, lines=8))
     >>> bool(abs(refine(near).energy() - torus.energy()) < 1e-9)

@@ -2,31 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from symfpu.chain.chain import Chain
+from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers
-from symfpu.numbers.public import public
-from symfpu.numbers.typed import Number, exact, seed_modes
+from symfpu.numbers.typed import seed_modes
+from symfpu.series.arguments import digits_of
 from symfpu.tori.broyden import Found, NotFound, solve, walk
+from symfpu.tori.energy import Energy
 from symfpu.tori.frequencies import (
-    LARGEST_NUMBER,
     Frequencies,
-    Plan,
     Point,
     assembled,
-    checked_plan,
     doubted,
     positive_by_seed,
     refuse_tiny,
+    require_size,
 )
 from symfpu.tori.from_series import FromSeries
+from symfpu.tori.orders import Orders, require_shifts
 from symfpu.tori.torus import Torus
 
 # relative error of the energy: what is not worth another torus, what a solution may leave
@@ -43,7 +43,7 @@ POINTS = 128  # angles at which that residual is taken, about
 class NoTorusAtEnergy(SymfpuError):
     """No torus of this energy: the way from the linear modes ends below it.
 
-    Raised by `torus_at_energy`.
+    Raised by `torus` of a series at a given energy.
 
     energy : asked for; harmonic : whether it is sum E_q. reached : the largest energy on the way;
         amplitudes : by seed, there, {} if there was none. reason : why it was not followed on.
@@ -63,7 +63,7 @@ class NoTorusAtEnergy(SymfpuError):
         listed = ", ".join(f"A_{q} = {a:.6g}" for q, a in self.amplitudes.items())
         there = f" ({listed})" if listed else ""
         way = f"its family was followed from 0 to {self.reached:.6g}{there}"
-        end = f"at order {target.plan.order}, then: {self.reason}"
+        end = f"at order {target.orders.order}, then: {self.reason}"
         advice = "take a smaller energy or another order"
         super().__init__(f"no torus of {name} {self.energy:.6g}: {way} {end}; {advice}")
 
@@ -93,12 +93,26 @@ class _Target:
     energies.
     """
 
-    plan: Plan
+    orders: Orders
+    digits: int | None
     search: Frequencies
-    energy: Fraction
-    harmonic: bool
+    asked: Energy
     weights: tuple[Fraction, ...]  # of A^2 of the seeds, or of their mode energies
-    by_amplitude: bool
+
+    @property
+    def energy(self) -> Fraction:
+        """What is asked for."""
+        return self.asked.exact
+
+    @property
+    def harmonic(self) -> bool:
+        """Whether it is sum E_q."""
+        return self.asked.harmonic
+
+    @property
+    def by_amplitude(self) -> bool:
+        """Whether the weights are those of A^2."""
+        return self.asked.amplitude_ratio is not None
 
     def measured(self, torus: Torus[FromSeries]) -> Any:
         """H, or the sum of E_q, at t = 0."""
@@ -111,11 +125,9 @@ class _Target:
         number = search.numbers.number
         linear = search.chain.frequencies(search.numbers)[search.modes]
         weights = np.array([number(w) for w in self.weights])
-        energy = number(self.energy)
-        stiffness = linear**2
-        if self.by_amplitude:
-            stiffness = (stiffness * weights).sum()
-        return np.asarray(2 * energy * weights / stiffness)
+        return squares_of_linear_modes(
+            linear, number(self.energy), weights, by_amplitude=self.by_amplitude
+        )
 
     def near(self, member: _Member, part: float) -> _Member:
         """The member with this part of the energy, near another member; raises NotFound."""
@@ -145,7 +157,7 @@ class _Target:
     def _torus(self, point: Point) -> Torus[FromSeries]:
         roots = self.search.numbers.sqrt(point.squares)
         amplitudes = dict(zip(self.search.seeds, roots.tolist(), strict=True))
-        return assembled(self.search, point, self.plan, amplitudes)
+        return assembled(self.search, point, self.orders, amplitudes)
 
     def _left(self, torus: Torus[FromSeries], part: float) -> Numbers:
         number = self.search.numbers.number
@@ -191,7 +203,7 @@ class _Target:
 
     def polished(self, member: _Member) -> _Member:
         """The same member with the digits asked for."""
-        digits = self.plan.digits
+        digits = self.digits
         assert digits is not None
         with MULTIPRECISION.context(digits):
             array = MULTIPRECISION.array
@@ -221,39 +233,19 @@ def _refuse_strange(found: Found[tuple[Point, Torus[FromSeries]]], member: _Memb
         raise NotFound(found.x, left, f"the equations of motion are met only to {share}")
 
 
-@public
-def torus_at_energy(
+def series_at_energy(
     chain: Chain,
     seeds: Sequence[int],
-    energy: Number,
+    energy: Energy,
+    orders: Orders,
     *,
-    order: int,
-    harmonic: bool = False,
-    amplitude_ratio: Mapping[int, Number] | None = None,
-    energy_ratio: Mapping[int, Number] | None = None,
-    frequency_order: int | None = None,
-    coordinate_order: int | None = None,
-    phases: Mapping[int, Number] | None = None,
     digits: int | None = None,
     near: Torus[FromSeries] | None = None,
 ) -> Torus[FromSeries]:
-    """The q-torus of a given energy and ratio of seed amplitudes or mode energies.
+    """The torus of the series with a given energy and ratio; its frequencies are found.
 
-    Its frequencies are found.
-
-    chain, seeds : the model and its distinct modes D_0; all quantities are dimensionless, phases
-        in radians.
-    energy : a positive exact number.
-    order : of the series.
-    harmonic : False, it is the total energy H at t = 0; True, the harmonic energy sum E_q at
-        t = 0, over all modes.
-    amplitude_ratio : weights of the amplitudes A_q, by seed.
-    energy_ratio : weights of the infinite-time averages of E_q of the seeds (other modes take
-        what the torus gives them). At most one of the two; default equal mode energies. Only
-        their ratios count.
-    frequency_order, coordinate_order : where frequencies and Q_q(t) are cut, up to order; default
-        order.
-    phases : by seed, radians; default 0.
+    chain, seeds : the model, with fixed ends, and its distinct modes D_0.
+    energy : at t = 0; without a ratio the seeds have equal averages of E_q.
     digits : of all results; None for doubles.
     near : a torus of the same chain and seeds, of an energy and ratio near to these, from which
         the way begins; default rest. It saves time and decides nothing else.
@@ -264,55 +256,49 @@ def torus_at_energy(
     Raises InputError for arguments out of range, NoTorusAtEnergy with the energies reached and
     why they end there: no frequencies, or a series that solves the equations of motion no better
     than to a quarter of the largest acceleration.
-
-    >>> torus = torus_at_energy(Chain(N=8, alpha="0.33"), (1, 2), "0.01", order=3)
-    >>> round(float(torus.energy()), 12), [round(a, 9) for a in torus.amplitudes.values()]
-    (0.01, [0.254094674, 0.129588043])
     """
-    plan = checked_plan(chain, order, frequency_order, coordinate_order, phases, digits)
+    require_chain(chain)
+    require_shifts(orders, chain)
+    places = None if digits is None else digits_of(digits)
     modes = tuple(sorted(seed_modes(seeds, chain.N)))
-    plan.check_size(chain, modes)
-    if not isinstance(harmonic, bool):
-        allowed = "False for the total energy H, True for the sum of the E_q"
-        raise InputError("harmonic", harmonic, allowed, "say which energy is meant")
-    total = exact(energy, "energy")
-    if not 1 / LARGEST_NUMBER <= total <= LARGEST_NUMBER:
-        raise InputError(
-            "energy", energy, "a positive number, 1e-60 to 1e60", "take a small one"
-        )
-    weights = _weights(chain, modes, amplitude_ratio, energy_ratio)
-    search = Frequencies(chain, modes, plan.frequency_order)
-    by_amplitude = amplitude_ratio is not None
-    target = _Target(plan, search, total, harmonic, weights, by_amplitude)
-    refuse_tiny(search, target.linear_squares, "energy", energy)
+    require_size(chain, modes, orders.order, places)
+    weights = seed_weights(chain, modes, energy)
+    search = Frequencies(chain, modes, orders.frequency_order)
+    target = _Target(orders, places, search, energy, weights)
+    refuse_tiny(search, target.linear_squares, "energy", energy.value)
     member = target.solved(near)
-    if digits is not None:
+    if places is not None:
         member = target.polished(member)
     assert member.torus is not None
     return doubted(member.torus)
 
 
-def _weights(
-    chain: Chain,
-    seeds: tuple[int, ...],
-    amplitude_ratio: Mapping[int, Number] | None,
-    energy_ratio: Mapping[int, Number] | None,
+def squares_of_linear_modes(
+    linear: Numbers, energy: Any, weights: Numbers, *, by_amplitude: bool
+) -> Numbers:
+    """A^2 of modes of the linear chain that share an energy; (s,).
+
+    linear : Omega_q. weights : of A^2, or of the energies, of sum 1.
+    """
+    stiffness = linear**2
+    if by_amplitude:
+        stiffness = (stiffness * weights).sum()
+    return np.asarray(2 * energy * weights / stiffness)
+
+
+def seed_weights(
+    chain: Chain, seeds: tuple[int, ...], energy: Energy
 ) -> tuple[Fraction, ...]:
-    """Weights of A^2 or of the mode energies, of sum 1."""
-    if amplitude_ratio is not None and energy_ratio is not None:
-        allowed = "at most one of amplitude_ratio and energy_ratio"
-        raise InputError(
-            "energy_ratio", dict(energy_ratio), allowed, "leave one of them out"
-        )
-    by_amplitude = amplitude_ratio is not None
+    """Weights of A^2, or of the mode energies, of sum 1; equal mode energies without a ratio."""
+    by_amplitude = energy.amplitude_ratio is not None
     name = "amplitude_ratio" if by_amplitude else "energy_ratio"
-    given = amplitude_ratio if by_amplitude else energy_ratio
+    given = energy.amplitude_ratio if by_amplitude else energy.energy_ratio
     equal = dict.fromkeys(seeds, 1)
     numbers = positive_by_seed(chain, name, equal if given is None else given)
-    if tuple(numbers) != seeds:
+    if set(numbers) != set(seeds):
         allowed = f"a weight for each of the seeds {seeds}"
         raise InputError(name, given, allowed, "name every seed once, and no other mode")
-    weights = list(numbers.values())
+    weights = [numbers[q] for q in seeds]
     if by_amplitude:
         weights = [w**2 for w in weights]
     total = sum(weights)

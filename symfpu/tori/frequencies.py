@@ -26,15 +26,13 @@ from symfpu.numbers.arithmetic import (
     Arithmetic,
     Numbers,
 )
-from symfpu.numbers.public import public
-from symfpu.numbers.typed import Number, exact, integer, order_of, seed_modes
+from symfpu.numbers.typed import Number, exact
 from symfpu.series.arguments import digits_of
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.memory import check_size
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import (
     amplitude_history,
-    by_seed,
     frequency_orders,
     order_doubts,
     residual_doubts,
@@ -42,6 +40,7 @@ from symfpu.tori.amplitudes import (
 )
 from symfpu.tori.broyden import Found, NotFound, solve, walk
 from symfpu.tori.from_series import FromSeries, require_series_torus
+from symfpu.tori.orders import Orders, require_shifts
 from symfpu.tori.root_certificate import certify_root
 from symfpu.tori.short_series import shifts_by_squares
 from symfpu.tori.torus import Torus
@@ -63,7 +62,7 @@ SAME_ROOT = 1e-6  # relative difference of amplitudes that are the same root
 class NoSelfConsistentFrequencies(SymfpuError):
     """No frequencies for these amplitudes: the walk from rest ends before.
 
-    Raised by `torus_at_amplitudes`.
+    Raised by `torus` of a series at given amplitudes.
 
     frequency_order : K. amplitudes : asked for; reached : by seed, the last ones on the way that
         have frequencies.
@@ -175,13 +174,14 @@ class Frequencies:
         """The solution that a torus is, in doubles; InputError for one of other seeds or chain."""
         series = require_series_torus(torus, "near").origin.series
         same = series.chain == self.chain and tuple(sorted(series.seeds)) == self.seeds
-        if not same or series.order < self.frequency_order:
-            allowed = "a torus of this chain, these seeds and this frequency order at least"
+        if not same:
+            allowed = "a torus of this chain and these seeds"
             raise InputError("near", torus.seeds, allowed, "leave it out")
         squares = np.array([float(torus.amplitudes[q]) ** 2 for q in self.seeds])
         by_mode = dict(zip(series.seeds, shifts(series).astype(float), strict=True))
         y = np.array([by_mode[q] for q in self.seeds]) / self.linear
-        _, slopes = series.frequency_terms(squares, self.frequency_order)
+        known = min(series.order, self.frequency_order)
+        _, slopes = series.frequency_terms(squares, known)
         relative = slopes[1:].sum(axis=0).astype(float) / self.linear[:, None]
         return Point(squares, y, relative, self.rest.inverse)
 
@@ -289,78 +289,28 @@ def _leading_zeros(shift: Any) -> int:
     return min(PLACES, max(0, -magnitude))
 
 
-@dataclass(frozen=True)
-class Plan:
-    """What is asked of a torus: its three orders, its phases and digits.
-
-    The orders are of its series, frequencies and coordinates.
-    """
-
-    order: int
-    frequency_order: int
-    coordinate_order: int
-    phases: Mapping[int, Number] | None
-    digits: int | None
-
-    def check_size(self, chain: Chain, seeds: tuple[int, ...]) -> None:
-        """TooLarge before anything is computed."""
-        ring = "fixedpoint" if self.digits else "float64"
-        check_size(chain, seeds, self.order, ring, self.digits or 0)
+def require_size(
+    chain: Chain, seeds: tuple[int, ...], order: int, digits: int | None
+) -> None:
+    """TooLarge before anything is computed."""
+    ring = "fixedpoint" if digits else "float64"
+    check_size(chain, seeds, order, ring, digits or 0)
 
 
-def checked_plan(
-    chain: Chain,
-    order: int,
-    frequency_order: int | None,
-    coordinate_order: int | None,
-    phases: Mapping[int, Number] | None,
-    digits: int | None,
-) -> Plan:
-    """The arguments checked."""
-    require_chain(chain)
-    order = order_of(order)
-    K = order_of(
-        order if frequency_order is None else frequency_order, argument="frequency_order"
-    )
-    coordinates = order if coordinate_order is None else coordinate_order
-    coordinates = integer(coordinates, "coordinate_order", 0)
-    first = 2 // chain.degree_step
-    for name, k in (("order", order), ("frequency_order", K)):
-        if k < first:
-            allowed = f"{first} or more, the order of the first frequency correction"
-            raise InputError(name, k, allowed, f"take {first} or more")
-    for name, k in (("frequency_order", K), ("coordinate_order", coordinates)):
-        if k > order:
-            allowed = f"0..{order}, the order of the series"
-            raise InputError(name, k, allowed, "compute a longer series or lower it")
-    if digits is not None:
-        digits_of(digits)
-    return Plan(order, K, coordinates, phases, digits)
-
-
-@public
-def torus_at_amplitudes(
+def series_at_amplitudes(
     chain: Chain,
     amplitudes: Mapping[int, Number],
-    order: int,
+    orders: Orders,
     *,
-    frequency_order: int | None = None,
-    coordinate_order: int | None = None,
-    phases: Mapping[int, Number] | None = None,
     digits: int | None = None,
     near: Torus[FromSeries] | None = None,
 ) -> Torus[FromSeries]:
-    """The q-torus with these seed amplitudes; its frequencies are found (Eq. omeser).
+    """The torus of the series with these seed amplitudes; its frequencies are found (Eq. omeser).
 
     Solves omega = Omega + sum mu^k omega^(k)(A; omega).
 
-    chain : the model; all quantities are dimensionless, phases in radians.
-    amplitudes : A_q by seed, positive exact numbers (a phase of pi changes the sign); A_q
-        multiplies cos(omega_q t + phi_q) in Q_q and is not Q_q(0).
-    order : of the series.
-    frequency_order : K of the frequency series, up to order; default the whole.
-    coordinate_order : where Q_q(t) is cut, up to order; default order.
-    phases : by seed, radians; default 0.
+    chain : with fixed ends. amplitudes : A_q by seed, positive exact numbers (a phase of pi changes
+        the sign); A_q multiplies cos(omega_q t + phi_q) in Q_q and is not Q_q(0).
     digits : of all results; None for doubles.
     near : a torus of the same chain and seeds, such as the one at amplitudes a little smaller, from
         which the way begins; default rest. It saves time and decides nothing else.
@@ -371,27 +321,24 @@ def torus_at_amplitudes(
     Raises InputError for arguments out of range, TooLarge as `lindstedt` does,
     NoSelfConsistentFrequencies where the family from rest ends or turns before, as it does at a
     strong resonance. The warnings of the torus are those of `solve_amplitudes`.
-
-    >>> torus = torus_at_amplitudes(Chain(N=16, alpha="0.33"), {1: "0.58", 2: "0.41"}, order=8)
-    >>> [round(float(w), 9) for w in torus.frequencies]
-    [0.196256458, 0.390456207]
     """
-    plan = checked_plan(chain, order, frequency_order, coordinate_order, phases, digits)
+    require_chain(chain)
+    require_shifts(orders, chain)
+    places = None if digits is None else digits_of(digits)
     numbers = positive_by_seed(chain, "amplitudes", amplitudes)
     seeds = tuple(numbers)
-    plan.check_size(chain, seeds)
-    search = Frequencies(chain, seeds, plan.frequency_order)
+    require_size(chain, seeds, orders.order, places)
+    search = Frequencies(chain, seeds, orders.frequency_order)
     squares = np.array([float(a) ** 2 for a in numbers.values()])
     refuse_tiny(search, squares, "amplitudes", amplitudes)
     point = search.at(squares, None if near is None else search.point_of(near))
-    if digits is not None:
-        with MULTIPRECISION.context(digits):
+    if places is not None:
+        with MULTIPRECISION.context(places):
             exact_squares = np.array(
                 [MULTIPRECISION.number(a) ** 2 for a in numbers.values()]
             )
-            search, point = search.polished(point, exact_squares, digits)
-    torus = assembled(search, point, plan, numbers)
-    return doubted(torus)
+            search, point = search.polished(point, exact_squares, places)
+    return doubted(assembled(search, point, orders, numbers))
 
 
 def positive_by_seed(
@@ -401,8 +348,8 @@ def positive_by_seed(
     if not isinstance(values, Mapping):
         allowed = "a mapping from seed modes to positive numbers"
         raise InputError(argument, values, allowed, "write it as {seed: number}")
-    modes = seed_modes(values, chain.N)
-    numbers = {q: exact(values[q], f"{argument}, seed {q}") for q in sorted(modes)}
+    modes = sorted(chain.seeds_of(values), key=lambda q: (abs(q), -q))
+    numbers = {q: exact(values[q], f"{argument}, seed {q}") for q in modes}
     for q, value in numbers.items():
         if not 1 / LARGEST_NUMBER <= value <= LARGEST_NUMBER:
             entry = f"{argument}, seed {q}"
@@ -424,7 +371,7 @@ def refuse_tiny(
 
 
 def assembled(
-    search: Frequencies, point: Point, plan: Plan, amplitudes: Mapping[int, Any]
+    search: Frequencies, point: Point, orders: Orders, amplitudes: Mapping[int, Any]
 ) -> Torus[FromSeries]:
     """The torus of a solution, without warnings.
 
@@ -432,28 +379,26 @@ def assembled(
     """
     digits = search.digits
     series = point.series
-    if series is None or series.order != plan.order:
+    if series is None or series.order != orders.order:
         frequencies = search.exact(point.shifts)
         series = lindstedt(
-            search.chain, search.seeds, frequencies, plan.order, digits=digits
+            search.chain, search.seeds, frequencies, orders.order, digits=digits
         )
     with search.numbers.context(digits):
-        terms, _ = series.frequency_terms(point.squares, plan.frequency_order)
+        terms, _ = series.frequency_terms(point.squares, orders.frequency_order)
         left = terms[1:].sum(axis=0) - shifts(series)
         residual = float(np.max(np.abs(left)))
         given = {}
         for q, a in amplitudes.items():
             given[q] = search.numbers.number(a) if isinstance(a, Fraction) else a
-    at_rest = dict.fromkeys(series.seeds, 0.0)
-    phases = at_rest | by_seed("phases", plan.phases, series)
     origin = FromSeries(
         series=series,
         amplitudes=tuple(given[q] for q in series.seeds),
-        frequency_order=plan.frequency_order,
-        order=plan.coordinate_order,
+        frequency_order=orders.frequency_order,
+        order=orders.coordinate_order,
         root_residual=residual,
     )
-    return origin.torus(phases)
+    return origin.torus()
 
 
 def doubted(torus: Torus[FromSeries]) -> Torus[FromSeries]:

@@ -284,8 +284,9 @@ class Torus(Shown, Gridded, Generic[Made]):
 
         t : a number, dimensionless. Returns two arrays (N-1,). Raises InputError for many times.
 
-        >>> from symfpu import Chain, breather_at_amplitude, integrate
-        >>> orbit = breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4")
+        >>> import symfpu
+        >>> from symfpu import Chain, integrate
+        >>> orbit = symfpu.torus(Chain(N=8, alpha="0.3"), (1,), amplitudes={1: "0.4"})
         >>> integrate(orbit.chain, *orbit.state(), 10.0, step=0.1).energy_error < 1e-10
         True
         """
@@ -588,7 +589,7 @@ def points_of_each_angle(wanted: int, s: int) -> int:
 def require_solution(solution: object, argument: str) -> Torus:
     """A torus or a breather; InputError for what is none."""
     if not isinstance(solution, Torus):
-        advice = "pass what solve_amplitudes, refine or periodic_orbit gave"
+        advice = "pass what torus, solve_amplitudes or refine gave"
         raise InputError(
             argument, type(solution).__name__, "a solution: a torus or a breather", advice
         )

@@ -16,8 +16,8 @@ def unfold(solution: Torus) -> Torus:
         rest, x_(2N-j) = -x_j. Its modes are standing waves of the modes q and -q of the ring,
         whose energies are those of the chain. Ours. Raises InputError.
 
-    >>> from symfpu import breather_at_amplitude
-    >>> unfold(breather_at_amplitude(Chain(N=8, alpha="0.3"), 1, "0.4"))
+    >>> import symfpu
+    >>> unfold(symfpu.torus(Chain(N=8, alpha="0.3"), (1,), amplitudes={1: "0.4"}))
     Torus(N=16, alpha=0.3, ends='periodic', omega_1=..., A_1=0.4, H=...,
     ... harmonics, residual ...)
     """

@@ -90,6 +90,8 @@ class Choice:
         refining = self._refining()
         names = [*names, *(["refine"] if refining else [])]
         imports = [f"from symfpu import {', '.join(sorted(names))}"]
+        if any("symfpu." in line for line in making):
+            imports = ["import symfpu", *imports]
         lines = [*imports, "", f"chain = {self.chain_text}", *making, *refining]
         return "\n".join(lines) + "\n"
 
@@ -188,26 +190,24 @@ def _by_frequencies(choice: Choice) -> Making:
 
 
 def _by_amplitudes(choice: Choice) -> Making:
-    amplitudes = _mapping(choice.by_seed)
-    making = call("torus_at_amplitudes", "chain", amplitudes, order=str(choice.last_order))
-    lines = [f"torus = {making}", "verdict = assess(torus.origin.series, torus)"]
-    return ["Chain", "assess", "torus_at_amplitudes"], lines
+    typed = choice.by_seed
+    return _of_series(choice, "amplitudes", _mapping(typed), tuple(typed))
 
 
 def _by_energy(choice: Choice) -> Making:
     typed = choice.by_seed
     exact(choice.energy, "energy")
-    making = call(
-        "torus_at_energy",
-        "chain",
-        repr(tuple(typed)),
-        f'"{choice.energy}"',
-        harmonic="False",
-        order=str(choice.last_order),
-        energy_ratio=_mapping(typed),
-    )
+    ratio = f"energy_ratio={_mapping(typed)}"
+    energy = f'symfpu.Energy("{choice.energy}", {ratio})'
+    return _of_series(choice, "energy", energy, tuple(typed))
+
+
+def _of_series(choice: Choice, name: str, given: str, seeds: tuple[int, ...]) -> Making:
+    """The torus of a series with what is given."""
+    how = {name: given, "method": '"series"', "order": str(choice.last_order)}
+    making = call("symfpu.torus", "chain", repr(seeds), **how)
     lines = [f"torus = {making}", "verdict = assess(torus.origin.series, torus)"]
-    return ["Chain", "assess", "torus_at_energy"], lines
+    return ["Chain", "assess"], lines
 
 
 MAKING = {

@@ -14,9 +14,11 @@ from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import solve_amplitudes
-from symfpu.tori.at_energy import torus_at_energy
-from symfpu.tori.frequencies import torus_at_amplitudes
+from symfpu.tori.at_energy import series_at_energy
+from symfpu.tori.energy import Energy
+from symfpu.tori.frequencies import series_at_amplitudes
 from symfpu.tori.from_series import FromSeries
+from symfpu.tori.orders import Orders
 from symfpu.tori.torus import Torus, comes_from
 from symfpu.tori.verdict import Assessment, assess
 from symfpu.workbench.choice import AMPLITUDES, ENERGY, FREQUENCIES, Choice
@@ -84,17 +86,10 @@ def _solved(choice: Choice, near: Solved | None, tell: Progress) -> Solved:
     start = _start(choice, near)
     tell("frequencies", NO_FRACTION)
     if choice.given == AMPLITUDES:
-        torus = torus_at_amplitudes(chain, typed, order, near=start)
+        torus = series_at_amplitudes(chain, typed, Orders(order), near=start)
     elif choice.given == ENERGY:
-        torus = torus_at_energy(
-            chain,
-            tuple(typed),
-            choice.energy,
-            harmonic=False,
-            order=order,
-            energy_ratio=typed,
-            near=start,
-        )
+        energy = Energy(choice.energy, energy_ratio=typed)
+        torus = series_at_energy(chain, tuple(typed), energy, Orders(order), near=start)
     else:
         raise InputError("given", choice.given, "a known one", "choose it on the page")
     return Solved(choice, torus, torus.origin.series)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, actions, breather_at_amplitude, refine, toda_torus, torus_at_amplitudes, unfold
+import symfpu
+from symfpu import Chain, InputError, actions, refine, toda_torus, unfold
 from tests.tolerances import NEWTON_TWIST, QUADRATURE, ROUNDING
 
 SEEDS = (1, 3)
@@ -12,7 +13,7 @@ SEEDS = (1, 3)
 def refined_toda():
     """The torus of Toda's chain with these frequencies, by Newton's method."""
     chain = Chain(4, potential="toda:1/2")
-    guess = torus_at_amplitudes(chain, {1: "0.1", 3: "0.1"}, 2)
+    guess = symfpu.torus(chain, (1, 3), amplitudes={1: "0.1", 3: "0.1"}, method="series", order=2)
     return refine(guess)
 
 
@@ -25,7 +26,7 @@ def test_toda_by_its_spectral_curve():
 
 def test_the_integral_along_an_angle():
     """Of P dQ, where the other angle stands still; the momenta are those of the full motion."""
-    torus = refine(torus_at_amplitudes(Chain(4, alpha="0.3", beta="0.2"), {1: "0.3", 2: "0.2"}, 4))
+    torus = refine(symfpu.torus(Chain(4, alpha="0.3", beta="0.2"), (1, 2), amplitudes={1: "0.3", 2: "0.2"}, method="series", order=4))
     omega = np.array([float(w) for w in torus.frequencies])
     around = np.linspace(0, 2 * np.pi, 64, endpoint=False)
     for place, q in enumerate(torus.seeds):
@@ -38,14 +39,14 @@ def test_the_integral_along_an_angle():
 
 
 def test_digits_of_the_solution():
-    orbit = breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.3")
+    orbit = symfpu.torus(Chain(4, alpha="0.3"), (1,), amplitudes={1: "0.3"})
     precise = actions(refine(orbit, digits=40))[1]
     assert precise.digits == 40
     assert float(precise) == pytest.approx(actions(orbit)[1], rel=NEWTON_TWIST)
 
 
 def test_a_ring_of_twice_the_length_has_twice_the_action():
-    orbit = breather_at_amplitude(Chain(8, beta=1), 1, "0.4")
+    orbit = symfpu.torus(Chain(8, beta=1), (1,), amplitudes={1: "0.4"})
     assert actions(unfold(orbit))[1] == pytest.approx(2 * actions(orbit)[1], rel=ROUNDING)
 
 

@@ -5,7 +5,7 @@ import pytest
 import symengine as se
 
 import symfpu
-from symfpu import Chain, InputError, actions, birkhoff_form, lindstedt, refine, toda, toda_torus, torus_at_amplitudes, twist_at_rest
+from symfpu import Chain, InputError, actions, birkhoff_form, lindstedt, refine, toda, toda_torus, twist_at_rest
 from symfpu.action_angle.birkhoff import chain_series, normal_form, symbolic_series
 from symfpu.algebra.truncated import Truncated
 from tests.tolerances import HIGH_PRECISION, SLOPE
@@ -64,7 +64,7 @@ def test_energy_and_frequencies_of_tori():
     form = birkhoff_form(chain, (1, 2), 3, digits=20)
     left = []
     for size in ("0.1", "0.2"):
-        torus = refine(torus_at_amplitudes(chain, {1: size, 2: size}, 8))
+        torus = refine(symfpu.torus(chain, (1, 2), amplitudes={1: size, 2: size}, method="series", order=8))
         found = actions(torus)
         rates = form.frequencies_at(found)
         gaps = [float(rates[q]) - float(w) for q, w in zip((1, 2), torus.frequencies, strict=True)]

@@ -7,7 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, alignment_indices, foretold_indices, normal_modes, refine, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, InputError, alignment_indices, foretold_indices, normal_modes, refine
 from symfpu.action_angle.foretold import flow_of, settled_text
 from symfpu.dynamics.alignment import random_frame
 from symfpu.dynamics.dimension import ODDNESS
@@ -23,7 +24,7 @@ WHOLE = pytest.param(3e4, 14, marks=pytest.mark.long)
 
 @cache
 def torus(s):
-    return refine(torus_at_amplitudes(CHAIN, SEEDS[s], 6))
+    return refine(symfpu.torus(CHAIN, tuple(SEEDS[s]), amplitudes=SEEDS[s], method="series", order=6))
 
 
 @cache
@@ -96,9 +97,9 @@ def test_what_a_time_can_show():
 @pytest.mark.long
 def test_full_tori_and_two_particles():
     """No normal directions at all."""
-    full = refine(torus_at_amplitudes(Chain(3, beta=1), {1: "0.2", 2: "0.3"}, 4))
+    full = refine(symfpu.torus(Chain(3, beta=1), (1, 2), amplitudes={1: "0.2", 2: "0.3"}, method="series", order=4))
     assert foretold_indices(full, 1e8).asymptotic_slopes == {2: 0, 3: -2, 4: -4}
-    alone = refine(torus_at_amplitudes(Chain(2, beta=1), {1: "0.3"}, 4))
+    alone = refine(symfpu.torus(Chain(2, beta=1), (1,), amplitudes={1: "0.3"}, method="series", order=4))
     assert foretold_indices(alone, 1e8).verdict == "regular, dimension 1"
 
 
@@ -113,7 +114,7 @@ def test_few_times_are_refused():
 
 
 def test_what_is_no_refined_torus_is_refused():
-    series = torus_at_amplitudes(CHAIN, {2: "0.5"}, 2)
+    series = symfpu.torus(CHAIN, (2,), amplitudes={2: "0.5"}, method="series", order=2)
     with pytest.raises(InputError, match="refine it first"):
         foretold_indices(series, 1e3)
 

@@ -19,7 +19,7 @@ TODA = Chain(8, potential=symfpu.toda("1/2"), ends="periodic")
 def travelling(s):
     """One wave through the modes N/2 and -q, or two of opposite directions with phases."""
     if s == 1:
-        return symfpu.breather_at_amplitude(Chain(6, alpha="0.4", ends="periodic"), -2, "0.3")
+        return symfpu.torus(Chain(6, alpha="0.4", ends="periodic"), (-2,), amplitudes={-2: "0.3"})
     chain = Chain(7, alpha="0.4", beta="0.2", ends="periodic")
     linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
     omega = [f"{linear[q] * 1.0003:.14f}" for q in (1, -3)]
@@ -30,15 +30,15 @@ def travelling(s):
 @cache
 def standing(s):
     if s == 1:
-        return unfold(symfpu.breather_at_amplitude(Chain(4, alpha="0.3", beta="0.4"), 2, "0.4"))
+        return unfold(symfpu.torus(Chain(4, alpha="0.3", beta="0.4"), (2,), amplitudes={2: "0.4"}))
     amplitudes = {1: "0.3", 3: "0.2"}
-    guess = symfpu.torus_at_amplitudes(Chain(5, beta=1), amplitudes, 6)
+    guess = symfpu.torus(Chain(5, beta=1), tuple(amplitudes), amplitudes=amplitudes, method="series", order=6)
     return unfold(symfpu.refine(guess, amplitudes=amplitudes))
 
 
 @cache
 def fixed(s):
-    return symfpu.refine(symfpu.torus_at_amplitudes(Chain(6, alpha="0.3", beta="0.2"), {1: "0.3", 2: "0.2"}, 4))
+    return symfpu.refine(symfpu.torus(Chain(6, alpha="0.3", beta="0.2"), (1, 2), amplitudes={1: "0.3", 2: "0.2"}, method="series", order=4))
 
 
 @cache
@@ -126,7 +126,7 @@ def test_todas_twist_by_its_spectral_curve():
 
 def test_unfolded_tori_have_half_the_twist():
     """Their actions are twice those of the fixed ends."""
-    breather = symfpu.breather_at_amplitude(Chain(5, alpha="0.3"), 2, "0.4")
+    breather = symfpu.torus(Chain(5, alpha="0.3"), (2,), amplitudes={2: "0.4"})
     assert twist(unfold(breather)).matrix == pytest.approx(twist(breather).matrix / 2, rel=NEWTON_TWIST)
 
 
@@ -138,7 +138,7 @@ def test_standing_waves_want_their_normal_modes():
 def test_standing_waves_that_can_be_displaced_are_refused():
     """Hyperbolic by Umklapp; in Toda's ring there is none of it, and a frequency of the cosine is missing."""
     for law, reason in (({"alpha": "0.5"}, "shrink exponentially"), ({"potential": symfpu.toda("1/2")}, "none is missing")):
-        waves = unfold(symfpu.breather_at_amplitude(Chain(4, **law), 1, "0.4"))
+        waves = unfold(symfpu.torus(Chain(4, **law), (1,), amplitudes={1: "0.4"}))
         with pytest.raises(InputError, match=reason):
             foretold_indices(waves, 1e3, normal=symfpu.normal_modes(waves))
 

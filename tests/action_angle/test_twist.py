@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, actions, breather_at_amplitude, refine, torus_at_amplitudes, twist
+from symfpu import Chain, actions, refine, twist
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.linear_system import SMALLEST_BLOCK
 from tests.action_angle.test_actions import SEEDS, refined_toda
@@ -39,14 +39,14 @@ def test_a_breather_has_the_twist_of_the_normal_form(N):
     form = symfpu.birkhoff_form(chain, (1,), 3, digits=20).coefficients
     misses = []
     for A in ("0.05", "0.1"):
-        found = twist(breather_at_amplitude(chain, 1, A))
+        found = twist(symfpu.torus(chain, (1,), amplitudes={1: A}))
         expected = 2 * form[2,] + 6 * form[3,] * found.actions[0]
         misses.append(abs(found.matrix[0, 0] - float(expected)))
     assert np.log2(misses[1] / misses[0]) == pytest.approx(4, abs=SLOPE)
 
 
 def test_determinants_of_two_angles():
-    found = twist(refine(torus_at_amplitudes(Chain(4, beta=1), {1: "0.1", 2: "0.1"}, 2)))
+    found = twist(refine(symfpu.torus(Chain(4, beta=1), (1, 2), amplitudes={1: "0.1", 2: "0.1"}, method="series", order=2)))
     (a, b), (_, d) = found.matrix
     assert found.asymmetry < NEWTON_TWIST
     first, second = found.frequencies
@@ -74,7 +74,7 @@ def missed(found, ends):
 def test_digits_of_a_torus(law, seed):
     """Symmetric to them, and what two tori nearby have."""
     chain, amplitudes = Chain(4, **CASES[law]), {1: "0.1", 2: "0.1"}
-    guess = torus_at_amplitudes(chain, amplitudes, 4)
+    guess = symfpu.torus(chain, tuple(amplitudes), amplitudes=amplitudes, method="series", order=4)
     found = twist(refine(guess, amplitudes=amplitudes, digits=30))
     assert (found.digits, found.method, found.matrix[0, 1].digits) == (30, "Newton", 30)
     assert found.asymmetry < mpmath.mpf(10) ** -30
@@ -85,7 +85,7 @@ def test_digits_of_a_torus(law, seed):
 
 def test_digits_of_a_breather():
     chain, given = Chain(5, alpha="0.3", beta="0.2"), {2: "0.4"}
-    orbit = breather_at_amplitude(chain, 2, "0.4")
+    orbit = symfpu.torus(chain, (2,), amplitudes={2: "0.4"})
     found = twist(refine(orbit, digits=30, amplitudes={2: "0.4"}))
     nearby = [moved(given, 2, part)[2] for part in ("1e-12", "-1e-12")]
     ends = [refine(orbit, digits=40, amplitudes={2: A}) for A in nearby]
@@ -93,7 +93,7 @@ def test_digits_of_a_breather():
 
 
 def test_steps_that_gain_nothing_are_named(monkeypatch):
-    orbit = refine(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), digits=20)
+    orbit = refine(symfpu.torus(Chain(4, beta=1), (2,), amplitudes={2: "0.1"}), digits=20)
     monkeypatch.setattr(iterative_refinement, "MOST_STEPS", 1)
     with pytest.raises(symfpu.NoTwist, match=r"iterative refinement stops at a residual or update of 1e-.*in_doubles"):
         twist(orbit)
@@ -102,7 +102,7 @@ def test_steps_that_gain_nothing_are_named(monkeypatch):
 def test_an_even_potential_with_more_harmonics_than_a_block_has():
     """Many digits keep odd harmonics alone; the slopes V''(r) - 1 have even ones alone."""
     amplitudes = {1: "0.1", 2: "0.1"}
-    guess = torus_at_amplitudes(Chain(4, beta="0.5"), amplitudes, 4)
+    guess = symfpu.torus(Chain(4, beta="0.5"), tuple(amplitudes), amplitudes=amplitudes, method="series", order=4)
     torus = refine(guess, amplitudes=amplitudes, digits=30)
     assert np.count_nonzero(torus.cosines) > SMALLEST_BLOCK
     assert (torus.harmonics.sum(axis=1) % 2 == 1).all()
@@ -112,9 +112,9 @@ def test_an_even_potential_with_more_harmonics_than_a_block_has():
 
 
 def test_what_is_not_refined_is_refused():
-    torus = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.8"}, 4)
+    torus = symfpu.torus(Chain(8, alpha="0.3"), (1,), amplitudes={1: "0.8"}, method="series", order=4)
     rough = symfpu.Torus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines)
-    precise = torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.8"}, 4, digits=20)
+    precise = symfpu.torus(Chain(8, alpha="0.3"), (1,), amplitudes={1: "0.8"}, method="series", order=4, digits=20)
     for solution in (torus, rough, precise):
         with pytest.raises(symfpu.InputError, match=r"residual .*: allowed is .* below 1e-08.*refine\(solution\)"):
             twist(solution)

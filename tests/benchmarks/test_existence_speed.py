@@ -2,19 +2,20 @@
 
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, breather_at_energy, periodic_orbit, prove_existence, refine
+import symfpu
+from symfpu import Chain, prove_existence, refine
 from symfpu.proofs.checkers import verify_certificate
 
 SHORT = Chain(N=32, alpha="0.33")
 CASES = {
-    "Fig. 9, omega": (lambda: periodic_orbit(SHORT, 1, "0.09844127049688513"), 32, {}),
-    "Fig. 9, A": (lambda: periodic_orbit(SHORT, 1, "0.09844127049688513"), 32, {"amplitude": "1.27153895251014"}),
-    "H = 0.014915, H": (lambda: breather_at_energy(SHORT, 1, "0.014915"), 30, {"energy": "0.014915"}),
-    "H = 0.75 from rest, omega": (lambda: breather_at_energy(SHORT, 1, "0.75"), 30, {}),
-    "H = 0.75 from rest, H": (lambda: breather_at_energy(SHORT, 1, "0.75"), 30, {"energy": "0.75"}),
-    "toda:1/3, A = 1/2": (lambda: breather_at_amplitude(Chain(32, potential="toda:1/3"), 1, "1/2"), 30, {"amplitude": "1/2"}),
-    "N = 64, A = 1": (lambda: breather_at_amplitude(Chain(64, alpha="0.33"), 1, "1"), 20, {}),
-    "N = 128, A = 1": (lambda: breather_at_amplitude(Chain(128, alpha="0.33"), 1, "1"), 20, {}),
+    "Fig. 9, omega": (lambda: symfpu.torus(SHORT, (1,), frequencies=("0.09844127049688513",)), 32, {}),
+    "Fig. 9, A": (lambda: symfpu.torus(SHORT, (1,), frequencies=("0.09844127049688513",)), 32, {"amplitude": "1.27153895251014"}),
+    "H = 0.014915, H": (lambda: symfpu.torus(SHORT, (1,), energy="0.014915"), 30, {"energy": "0.014915"}),
+    "H = 0.75 from rest, omega": (lambda: symfpu.torus(SHORT, (1,), energy="0.75"), 30, {}),
+    "H = 0.75 from rest, H": (lambda: symfpu.torus(SHORT, (1,), energy="0.75"), 30, {"energy": "0.75"}),
+    "toda:1/3, A = 1/2": (lambda: symfpu.torus(Chain(32, potential="toda:1/3"), (1,), amplitudes={1: "1/2"}), 30, {"amplitude": "1/2"}),
+    "N = 64, A = 1": (lambda: symfpu.torus(Chain(64, alpha="0.33"), (1,), amplitudes={1: "1"}), 20, {}),
+    "N = 128, A = 1": (lambda: symfpu.torus(Chain(128, alpha="0.33"), (1,), amplitudes={1: "1"}), 20, {}),
 }
 
 

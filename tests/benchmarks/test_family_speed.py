@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, family, floquet, periodic_orbit, refine
+import symfpu
+from symfpu import Chain, family, floquet, refine, torus
 
 CHAIN, OMEGA = Chain(32, "0.33"), "0.0981410995944860"
 LENGTHS = (16, 32, 64, 128, 256)
@@ -15,18 +16,18 @@ OUT = Path("out")
 
 
 def test_breather(benchmark, record):
-    benchmark.pedantic(periodic_orbit, (CHAIN, 1, OMEGA), rounds=3, iterations=1)
-    record("breather N = 32, seed 1, doubles", note=f"residual {periodic_orbit(CHAIN, 1, OMEGA).residual():.1e}")
+    benchmark.pedantic(torus, (CHAIN, (1,)), {"frequencies": (OMEGA,)}, rounds=3, iterations=1)
+    record("breather N = 32, seed 1, doubles", note=f"residual {symfpu.torus(CHAIN, (1,), frequencies=(OMEGA,)).residual():.1e}")
 
 
 def test_breather_at_a_hundred_digits(benchmark, record):
-    orbit = periodic_orbit(CHAIN, 1, OMEGA)
+    orbit = symfpu.torus(CHAIN, (1,), frequencies=(OMEGA,))
     found = benchmark.pedantic(refine, (orbit,), {"digits": 100}, rounds=1, iterations=1)
     record("breather N = 32, seed 1, 100 digits", note=f"residual bound {float(found.origin.bound):.0e}, {found.origin.sweeps} sweeps")
 
 
 def test_multipliers(benchmark, record):
-    orbit = periodic_orbit(CHAIN, 1, OMEGA)
+    orbit = symfpu.torus(CHAIN, (1,), frequencies=(OMEGA,))
     benchmark.pedantic(floquet, (orbit,), rounds=3, iterations=1)
     record("Floquet multipliers, N = 32, seed 1")
 
@@ -46,7 +47,7 @@ def test_growth_with_the_chain(benchmark, record):
     def all_lengths():
         for N in LENGTHS:
             start = time.perf_counter()
-            orbit = breather_at_amplitude(Chain(N, "0.33"), 25 * N // 32, 0.05 * (N / 32) ** 0.5)
+            orbit = symfpu.torus(Chain(N, "0.33"), (25 * N // 32,), amplitudes={25 * N // 32: 0.05 * (N / 32) ** 0.5})
             middle = time.perf_counter()
             floquet(orbit)
             rows.append((N, middle - start, time.perf_counter() - middle, len(orbit.cosines) - 1))
@@ -81,4 +82,4 @@ def _written(rows):
 @pytest.fixture(autouse=True)
 def compiled():
     """Loops are compiled once, before anything is timed."""
-    floquet(periodic_orbit(Chain(8, "0.33"), 1, "0.3905"))
+    floquet(symfpu.torus(Chain(8, "0.33"), (1,), frequencies=("0.3905",)))

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import symfpu
 from symfpu import (
     Atlas,
     Chain,
@@ -15,12 +16,10 @@ from symfpu import (
     SweepRows,
     assess,
     atlas,
-    breather_at_energy,
     floquet,
     frequency_rank,
     read_atlas,
     sweep,
-    torus_at_energy,
 )
 from symfpu.borders import newton_end
 from symfpu.borders.column import atlas_column
@@ -101,7 +100,7 @@ def test_a_border_is_where_the_radius_is_one():
     below, above = found["between"]
     assert below < found["energy"] < above
     assert math.log(above / below) <= WIDTH
-    tori = [torus_at_energy(BETA, (7,), H, harmonic=False, order=4) for H in (below, above)]
+    tori = [symfpu.torus(BETA, (7,), energy=H, method="series", order=4) for H in (below, above)]
     radii = [assess(torus.origin.series, torus).pole_radius for torus in tori]
     assert radii[0] > 1 > radii[1]
     assert tori[0].energy() == pytest.approx(below, rel=SIX_DIGITS)
@@ -121,7 +120,7 @@ def test_borders_scale_as_energies_do(name, power):
 def test_by_amplitude_the_border_of_one_seed_is_the_same():
     found = border_of(BETA), border_of(BETA, by="amplitude")
     assert found[1]["energy"] == pytest.approx(found[0]["energy"], rel=LOCATED)
-    torus = torus_at_energy(BETA, (7,), found[0]["energy"], harmonic=False, order=4)
+    torus = symfpu.torus(BETA, (7,), energy=found[0]["energy"], method="series", order=4)
     assert found[1]["place"] == pytest.approx(abs(float(torus.amplitudes[7])), rel=LOCATED)
 
 
@@ -201,7 +200,7 @@ def test_the_first_unstable_breather_is_that_of_its_multipliers():
     found = column["borders"]["stability"]
     below, above = found["between"]
     assert above / below <= LOSS_WIDTH * (1 + 2 * SIX_DIGITS)
-    sides = [floquet(breather_at_energy(BETA, 1, H, harmonic=False)).stable for H in (below, above)]
+    sides = [floquet(symfpu.torus(BETA, (1,), energy=symfpu.Energy(H, harmonic=False))).stable for H in (below, above)]
     assert sides == [True, False]
 
 

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from symfpu import Atlas, Chain, InputError, SweepRows, alignment_indices, atlas, breather_at_energy, packet_state, read_atlas
+import symfpu
+from symfpu import Atlas, Chain, InputError, SweepRows, alignment_indices, atlas, packet_state, read_atlas
 from symfpu.borders import chaos
 from symfpu.borders.chaos import COARSE, DRAWS, EARLIER, FACTOR, QUIET, ChaosRay, chaos_borders
 from symfpu.borders.column import atlas_column
@@ -105,7 +106,7 @@ def test_above_a_border_an_orbit_is_chaotic_and_below_it_is_not_seen():
 def test_a_breather_stays_where_the_packet_of_its_seed_is_chaotic():
     """No orbit of alpha leaves its well below H = 1/6; twice the border of the packet by 1e5."""
     chain, H = Chain(16, alpha=1), "0.16"
-    breather = breather_at_energy(chain, 1, H, harmonic=False)
+    breather = symfpu.torus(chain, (1,), energy=symfpu.Energy(H, harmonic=False))
     on_it = [(breather.Q(t), breather.P(t)) for t in (0.0, 5.0)]
     packets = [packet_state(chain, (1,), H, phases={1: phase}) for phase in (0.0, 1.0, 2.0)]
     seen = chaos.chaos_times(chain, [*on_it, *packets], 1e5)

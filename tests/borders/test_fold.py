@@ -5,7 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_energy, lindstedt, refine, torus_at_energy
+import symfpu
+from symfpu import Chain, lindstedt, refine
 from symfpu.borders.fold import _determinant, sheet_of
 from symfpu.borders.newton_end import NewtonEnd, RefinedPoint
 from symfpu.borders.point import _radius
@@ -24,7 +25,7 @@ LEAST, STEP = 1e-4, 1.2
 def walked(steps):
     """The breather of seed 1 by so many steps from the linear chain."""
     if steps == 0:
-        return refine(torus_at_energy(CHAIN, (1,), str(LEAST), order=8), energy=str(LEAST))
+        return refine(symfpu.torus(CHAIN, (1,), energy=str(LEAST), method="series", order=8), energy=str(LEAST))
     return refine(walked(steps - 1), energy=f"{LEAST * STEP**steps:.10g}", tolerance=1e-10)
 
 
@@ -101,7 +102,7 @@ def test_the_sign_changes_at_the_fold(part, sign):
 @pytest.mark.parametrize(("chain", "seed", "energy"), [(Chain(8, beta=1), 1, "0.05"), (Chain(8, beta=1), 3, "0.5")], ids=repr)
 def test_the_coefficient_of_the_weakest_direction_is_that_of_the_eigenvector(chain, seed, energy):
     """By all eigenvectors of the derivative by differences; too few steps of inverse iteration named harmonic 7."""
-    torus = refine(breather_at_energy(chain, seed, energy), energy=energy, tolerance=1e-8)
+    torus = refine(symfpu.torus(chain, (seed,), energy=energy), energy=energy, tolerance=1e-8)
     matrix, unknown = range_matrix(torus)
     values, vectors = np.linalg.eig(matrix)
     sizes = np.abs(vectors[:, np.argmin(np.abs(values))])

@@ -4,7 +4,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, NoBreatherAtEnergy, NoPeriodicOrbit, breather_at_amplitude, breather_at_energy, periodic_orbit
+import symfpu
+from symfpu import Chain, InputError, NoBreatherAtEnergy, NoPeriodicOrbit, NoTorus, refine
 from tests.tolerances import (
     CONDITION,
     DISTINCTION,
@@ -61,7 +62,7 @@ CASES = (
 def test_one_mode_has_the_frequency_of_its_potential(chain, seed, energy):
     with mpmath.workdps(30):
         omega = frequency_at(potential(chain, seed), mpmath.mpf(energy))
-    orbit = breather_at_energy(chain, seed, energy)
+    orbit = symfpu.torus(chain, (seed,), energy=energy)
     assert orbit.energy() == pytest.approx(float(energy), rel=CONDITION)
     assert float(orbit.frequency) == pytest.approx(float(omega), rel=ONE_MODE_FREQUENCY)
     others = np.delete(np.arange(chain.N - 1), seed - 1)
@@ -71,7 +72,7 @@ def test_one_mode_has_the_frequency_of_its_potential(chain, seed, energy):
 
 def test_harmonic_energy_is_another_member():
     chain = Chain(8, alpha="0.4", beta="0.1")
-    total, harmonic = breather_at_energy(chain, 3, "0.4"), breather_at_energy(chain, 3, "0.4", harmonic=True)
+    total, harmonic = symfpu.torus(chain, (3,), energy="0.4"), symfpu.torus(chain, (3,), energy=symfpu.Energy("0.4", harmonic=True))
     assert total.energy() == pytest.approx(0.4, rel=CONDITION)
     assert harmonic.harmonic_energies().sum() == pytest.approx(0.4, rel=CONDITION)
     assert harmonic.energy() != pytest.approx(0.4, rel=DISTINCTION)
@@ -79,15 +80,12 @@ def test_harmonic_energy_is_another_member():
 
 def test_a_member_nearby_is_enough():
     chain = Chain(8, alpha="0.4", beta="0.1")
-    member = breather_at_amplitude(chain, 3, "-0.8")
-    found = breather_at_energy(chain, 3, 1.01 * member.energy(), guess=member)
+    member = symfpu.torus(chain, (3,), amplitudes={3: "-0.8"})
+    found = refine(member, energy=1.01 * member.energy())
     assert found.energy() == pytest.approx(1.01 * member.energy(), rel=CONDITION)
     assert found.amplitude < 0
-    with pytest.raises(NoPeriodicOrbit):
-        breather_at_energy(chain, 3, 1e6 * member.energy(), guess=member)
-    for guess in (member.cosines, breather_at_amplitude(chain, 2, "0.1"), breather_at_amplitude(Chain(8, alpha="0.4"), 3, "0.1")):
-        with pytest.raises(InputError, match=r"^guess = "):
-            breather_at_energy(chain, 3, 1, guess=guess)
+    with pytest.raises(NoTorus):
+        refine(member, energy=1e6 * member.energy())
 
 
 def test_the_family_ends_at_the_barrier_of_its_potential():
@@ -96,12 +94,12 @@ def test_the_family_ends_at_the_barrier_of_its_potential():
     a, b, _ = (float(value) for value in potential(chain, 4))
     barrier = 4 * a**3 / (27 * b**2)
     with pytest.raises(NoBreatherAtEnergy, match=r"the family from rest was followed over 0 \.\. .* ended because: ") as failure:
-        breather_at_energy(chain, 4, "50")
+        symfpu.torus(chain, (4,), energy="50")
     error = failure.value
     assert 0.97 * barrier < error.reached < barrier
     assert (error.seed, error.energy, error.harmonic) == (4, 50.0, False)
     assert error.reason
-    member = periodic_orbit(chain, 4, error.frequency)
+    member = symfpu.torus(chain, (4,), frequencies=(error.frequency,))
     assert float(member.energy()) == pytest.approx(error.reached, rel=RELATIVE_SHIFT)
     assert member.amplitude == pytest.approx(error.amplitude, rel=RELATIVE_SHIFT)
 
@@ -109,18 +107,18 @@ def test_the_family_ends_at_the_barrier_of_its_potential():
 @pytest.mark.parametrize("energy", [0, -1, "one", float("inf")])
 def test_energies_that_select_no_orbit_are_refused(energy):
     with pytest.raises(InputError, match=r"^energy = "):
-        breather_at_energy(ALPHA, 1, energy)
+        symfpu.torus(ALPHA, (1,), energy=energy)
 
 
 def test_other_bad_input_is_refused():
     with pytest.raises(InputError, match=r"^seeds = "):
-        breather_at_energy(ALPHA, 0, "0.1")
+        symfpu.torus(ALPHA, (0,), energy="0.1")
     for chain in (ALPHA, ring(8, alpha="0.25")):
         with pytest.raises(InputError, match=r"^harmonic = "):
-            breather_at_energy(chain, 1, "0.1", harmonic="yes")
+            symfpu.torus(chain, (1,), energy=symfpu.Energy("0.1", harmonic="yes"))
 
 
 def test_solutions_of_negative_squared_frequency_are_no_orbits():
     """cosh solves the same equations; a soft mode at an amplitude beyond its barrier."""
     with pytest.raises(NoPeriodicOrbit):
-        breather_at_amplitude(Chain(6, beta=-1), 4, "1.5")
+        symfpu.torus(Chain(6, beta=-1), (4,), amplitudes={4: "1.5"})

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from symfpu import Chain, InputError, NoPeriodicOrbit, NoRealAmplitude, UndeterminedAmplitudes, breather_at_amplitude, periodic_orbit
+import symfpu
+from symfpu import Chain, InputError, NoPeriodicOrbit, NoRealAmplitude, UndeterminedAmplitudes, refine
 from tests import tolerances
 from tests.oracles.oscillators import duffing
 from tests.reference import PERIODIC_ORBITS
@@ -40,7 +41,7 @@ def after_one_period(orbit):
 
 @pytest.mark.parametrize("known", PERIODIC_ORBITS, ids=lambda known: f"seed {known.seed}")
 def test_independent_numbers(known):
-    orbit = periodic_orbit(Chain(known.N, alpha=known.alpha), known.seed, known.frequency)
+    orbit = symfpu.torus(Chain(known.N, alpha=known.alpha), (known.seed,), frequencies=(known.frequency,))
     assert orbit.frequency == Fraction(known.frequency)
     assert orbit.amplitude == pytest.approx(known.amplitude, rel=PERIODIC_ORBIT)
     assert orbit.energy() == pytest.approx(known.energy, rel=PERIODIC_ORBIT)
@@ -49,7 +50,7 @@ def test_independent_numbers(known):
 
 @pytest.mark.parametrize(("chain", "seed", "amplitude"), CASES, ids=repr)
 def test_the_orbit_closes(chain, seed, amplitude):
-    orbit = breather_at_amplitude(chain, seed, amplitude)
+    orbit = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     assert orbit.amplitude == pytest.approx(float(amplitude), rel=LAST_DIGIT)
     assert orbit.residual() < NEWTON_RESIDUAL
     assert after_one_period(orbit) < PERIOD_RETURN
@@ -62,10 +63,10 @@ def test_one_mode_of_beta_is_the_duffing_oscillator(N, seed):
     with mpmath.workdps(30):
         squared = chain.linear_frequency(seed) ** 2
         omega, amplitude = duffing(squared, mpmath.mpf("0.5") / (2 * N) * squared**2 * chain.C(*[seed] * 4), mpmath.mpf(1))
-        orbit = periodic_orbit(chain, seed, mpmath.nstr(omega, 25))
+        orbit = symfpu.torus(chain, (seed,), frequencies=(mpmath.nstr(omega, 25),))
         assert orbit.frequency == Fraction(mpmath.nstr(omega, 25))
         assert abs(orbit.amplitude / amplitude - 1) < ELLIPTIC
-        assert abs(float(breather_at_amplitude(chain, seed, float(amplitude)).frequency) / omega - 1) < ELLIPTIC
+        assert abs(float(symfpu.torus(chain, (seed,), amplitudes={seed: float(amplitude)}).frequency) / omega - 1) < ELLIPTIC
     others = np.delete(np.arange(N - 1), seed - 1)
     assert np.all(orbit.cosines[:, others] == pytest.approx(0, abs=ELLIPTIC))
 
@@ -76,75 +77,59 @@ def test_a_small_shift_of_the_frequency_loses_no_digits():
     with mpmath.workdps(30):
         squared = chain.linear_frequency(1) ** 2
         omega, amplitude = duffing(squared, squared**2 / 8 * chain.C(1, 1, 1, 1), mpmath.mpf("0.001"))
-        assert abs(periodic_orbit(chain, 1, mpmath.nstr(omega, 29)).amplitude / amplitude - 1) < ELLIPTIC
+        assert abs(symfpu.torus(chain, (1,), frequencies=(mpmath.nstr(omega, 29),)).amplitude / amplitude - 1) < ELLIPTIC
 
 
 def test_the_breather_of_figure_9():
     """The printed A = 1.3009 at this frequency is a root of a truncated series; the orbit has another, and A = 1.3009 another frequency."""
-    orbit = periodic_orbit(ALPHA, 1, FIG9)
+    orbit = symfpu.torus(ALPHA, (1,), frequencies=(FIG9,))
     assert orbit.amplitude == pytest.approx(1.27153895251, abs=PERIODIC_ORBIT)
     assert orbit.energy() == pytest.approx(0.014318397381, abs=PERIODIC_ORBIT)
-    printed = breather_at_amplitude(ALPHA, 1, "1.3009149083500795")
+    printed = symfpu.torus(ALPHA, (1,), amplitudes={1: "1.3009149083500795"})
     assert float(printed.frequency) == pytest.approx(0.09845654289692, abs=tolerances.THIRTEEN_PLACES)
     assert printed.energy() == pytest.approx(0.015239087871, abs=PERIODIC_ORBIT)
     assert after_one_period(orbit) < PERIOD_RETURN
-    assert periodic_orbit(ALPHA, 1, FIG9, printed.cosines).amplitude == pytest.approx(orbit.amplitude, rel=PERIODIC_ORBIT)
+    assert refine(printed, frequencies=(FIG9,)).amplitude == pytest.approx(orbit.amplitude, rel=PERIODIC_ORBIT)
 
 
 @pytest.mark.long
 def test_the_walk_stays_on_the_family():
     """At A = 3 Newton's method from the linear mode falls onto a branch in resonance, mode 17 at harmonic 15, omega = 0.09874."""
-    assert float(breather_at_amplitude(ALPHA, 1, 3).frequency) == pytest.approx(0.0999729484, abs=TEN_PLACES)
+    assert float(symfpu.torus(ALPHA, (1,), amplitudes={1: 3}).frequency) == pytest.approx(0.0999729484, abs=TEN_PLACES)
 
 
 @pytest.fixture(scope="module")
 def orbit():
-    return breather_at_amplitude(Chain(8, alpha="0.4", beta="0.1"), 3, "0.8")
+    return symfpu.torus(Chain(8, alpha="0.4", beta="0.1"), (3,), amplitudes={3: "0.8"})
 
 
-@pytest.mark.parametrize("search", [periodic_orbit, breather_at_amplitude])
+@pytest.mark.parametrize("what", [{"frequencies": ("0.1",)}, {"amplitudes": {1: "0.1"}}, {"energy": 1}], ids=str)
 @pytest.mark.parametrize("seed", [0, 32, 1.5, "1"])
-def test_seeds_outside_the_chain_are_refused(search, seed):
+def test_seeds_outside_the_chain_are_refused(what, seed):
     with pytest.raises(InputError, match=r"^seeds = "):
-        search(ALPHA, seed, "0.1")
-    with pytest.raises(InputError, match=r"^seeds = "):
-        search(ALPHA, seed, "0.1", np.ones((2, 31)))
+        symfpu.torus(ALPHA, (seed,), **what)
 
 
 @pytest.mark.parametrize("number", [0, "one", float("nan")])
 def test_numbers_that_select_no_orbit_are_refused(number):
-    with pytest.raises(InputError, match=r"^frequency = "):
-        periodic_orbit(ALPHA, 1, number)
-    with pytest.raises(InputError, match=r"^amplitude = "):
-        breather_at_amplitude(ALPHA, 1, number)
-
-
-@pytest.mark.parametrize("guess", ["x", 1.0, np.ones((1, 31)), np.ones((3, 30)), np.zeros((2, 31)), np.full((2, 31), np.nan)])
-def test_bad_guesses_are_refused(guess):
-    with pytest.raises(InputError, match=r"^guess = "):
-        periodic_orbit(ALPHA, 1, FIG9, guess)
-
-
-def test_more_unknowns_than_memory_are_refused():
-    with pytest.raises(InputError, match="cut the guess"):
-        periodic_orbit(ALPHA, 1, FIG9, np.ones((1000, 31)))
+    with pytest.raises(InputError, match=r"^frequencies"):
+        symfpu.torus(ALPHA, (1,), frequencies=(number,))
+    with pytest.raises(InputError, match=r"^amplitudes"):
+        symfpu.torus(ALPHA, (1,), amplitudes={1: number})
 
 
 def test_the_wrong_side_of_the_linear_frequency_has_no_amplitude():
     with pytest.raises(NoRealAmplitude, match="A_1"):
-        periodic_orbit(ALPHA, 1, "0.097")
+        symfpu.torus(ALPHA, (1,), frequencies=("0.097",))
     with pytest.raises(UndeterminedAmplitudes):
-        periodic_orbit(Chain(2, alpha=1), 1, "1.4")
+        symfpu.torus(Chain(2, alpha=1), (1,), frequencies=("1.4",))
 
 
-@pytest.mark.parametrize("scale", [1e-6, 40.0, 1e200])
-def test_a_search_that_fails_carries_its_best_iterate(scale):
-    guess = np.zeros((3, 31))
-    guess[1, 0] = scale
-    guess[2, 1] = -scale
-    with pytest.raises(NoPeriodicOrbit, match="start from a guess nearer") as failure:
-        periodic_orbit(ALPHA, 1, FIG9, guess)
-    assert failure.value.seed == 1
-    assert failure.value.iterate.shape[1] == 31
-    assert failure.value.frequency == pytest.approx(float(FIG9), rel=LAST_DIGIT)
-    assert not failure.value.residual < tolerances.NO_CONVERGENCE
+def test_a_walk_that_ends_carries_its_last_orbit():
+    """A soft mode ends at its barrier."""
+    with pytest.raises(NoPeriodicOrbit, match="ask for an orbit of smaller amplitude") as failure:
+        symfpu.torus(Chain(6, beta=-1), (4,), amplitudes={4: "1.5"})
+    assert failure.value.seed == 4
+    assert failure.value.iterate.shape[1] == 5
+    assert 0 < failure.value.frequency < Chain(6, beta=-1).frequencies()[3]
+    assert "the best iterate" in str(failure.value)

@@ -7,7 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, NoTorus, breather_at_amplitude, periodic_orbit, refine, toda_torus
+import symfpu
+from symfpu import Chain, InputError, NoTorus, refine, toda_torus
 from symfpu.chain.tension_terms import terms
 from symfpu.numbers.arithmetic import MULTIPRECISION
 from tests.oracles.oscillators import duffing
@@ -30,7 +31,7 @@ CASES = (
 @pytest.mark.long
 @pytest.mark.parametrize(("chain", "seed", "frequency", "digits"), CASES, ids=repr)
 def test_the_digits_continue_those_of_doubles(chain, seed, frequency, digits):
-    orbit = periodic_orbit(chain, seed, frequency)
+    orbit = symfpu.torus(chain, (seed,), frequencies=(frequency,))
     precise = refine(orbit, digits=digits + 5)
     assert precise.frequency == Fraction(frequency)
     assert precise.digits == digits + 5
@@ -43,7 +44,7 @@ def test_the_digits_continue_those_of_doubles(chain, seed, frequency, digits):
 
 def test_the_bound_is_above_the_residual():
     """One that sees a wrong digit: tests/refinement/test_digits.py."""
-    orbit = breather_at_amplitude(Chain(6, alpha="0.4", beta="0.2"), 5, "0.6")
+    orbit = symfpu.torus(Chain(6, alpha="0.4", beta="0.2"), (5,), amplitudes={5: "0.6"})
     precise = refine(orbit, digits=40)
     t = np.linspace(0, 2 * np.pi / float(orbit.frequency), 1001)
     largest = np.max(np.abs(orbit.chain.accelerations(orbit.Q(t))))
@@ -57,9 +58,9 @@ def test_duffing_to_many_digits():
         squared = chain.linear_frequency(2) ** 2
         omega, amplitude = duffing(squared, mpmath.mpf("0.5") / 8 * squared**2 * chain.C(2, 2, 2, 2), mpmath.mpf(1))
         texts = mpmath.nstr(omega, 29), mpmath.nstr(amplitude, 29)
-        by_frequency = refine(periodic_orbit(chain, 2, texts[0]), digits=30)
+        by_frequency = refine(symfpu.torus(chain, (2,), frequencies=(texts[0],)), digits=30)
         assert abs(by_frequency.amplitude / amplitude - 1) < ORACLE
-        by_amplitude = refine(breather_at_amplitude(chain, 2, texts[1]), digits=30, amplitudes={2: texts[1]})
+        by_amplitude = refine(symfpu.torus(chain, (2,), amplitudes={2: texts[1]}), digits=30, amplitudes={2: texts[1]})
         assert abs(mpmath.mpf(by_amplitude.frequency.numerator) / by_amplitude.frequency.denominator / omega - 1) < ORACLE
         assert abs(by_amplitude.amplitude - mpmath.mpf(texts[1])) < mpmath.mpf("1e-38")
         assert not by_amplitude.cosines[:, [0, 2]].any()
@@ -67,7 +68,7 @@ def test_duffing_to_many_digits():
 
 def test_toda_has_the_energy_of_the_spectral_curve():
     chain = Chain(4, potential="toda:1/2")
-    precise = refine(periodic_orbit(chain, 1, "0.78"), digits=30)
+    precise = refine(symfpu.torus(chain, (1,), frequencies=("0.78",)), digits=30)
     exact = toda_torus(chain, (1,), frequencies=("0.78",), digits=35)
     assert abs(precise.energy() / exact.energy - 1) < ORACLE
     assert precise.origin.bound < ORACLE
@@ -79,7 +80,7 @@ def test_toda_has_the_energy_of_the_spectral_curve():
 )
 def test_closed_laws_to_many_digits(text, amplitude):
     """The residual goes by the closed law, the orbit by its first Taylor coefficients."""
-    orbit = breather_at_amplitude(Chain(6, potential=text), 2, amplitude)
+    orbit = symfpu.torus(Chain(6, potential=text), (2,), amplitudes={2: amplitude})
     precise = refine(orbit, digits=45, amplitudes={2: amplitude})
     rounded = precise.by_harmonic()[: len(orbit.cosines)].astype(float)
     assert rounded == pytest.approx(orbit.cosines, abs=ORBIT_IN_DOUBLES * np.max(np.abs(orbit.cosines)))
@@ -103,19 +104,19 @@ def test_the_rest_of_the_terms_is_above_what_is_left_out(text):
 
 @pytest.mark.parametrize("text", ["expr:cosh(r)-1", "expr:log(1+r**2)/2", "expr:r**2/2+sqrt(2)*sin(r)**3"])
 def test_what_has_no_known_rest_is_refused(text):
-    orbit = breather_at_amplitude(Chain(2, potential=text), 1, "0.1")
+    orbit = symfpu.torus(Chain(2, potential=text), (1,), amplitudes={1: "0.1"})
     with pytest.raises(InputError, match=r"^torus = .*exponentials and powers"):
         refine(orbit, digits=20)
 
 
 def test_stretches_near_the_singularity_are_refused():
-    orbit = breather_at_amplitude(Chain(2, potential="lj:2,1"), 1, "0.5")
+    orbit = symfpu.torus(Chain(2, potential="lj:2,1"), (1,), amplitudes={1: "0.5"})
     with pytest.raises(InputError, match=r"powers of stretches up to .* take fewer digits or a smaller amplitude"):
         refine(orbit, digits=1000)
 
 
 def test_steps_that_gain_nothing_are_given_up(monkeypatch):
-    orbit = breather_at_amplitude(Chain(6, alpha="0.4"), 2, "0.5")
+    orbit = symfpu.torus(Chain(6, alpha="0.4"), (2,), amplitudes={2: "0.5"})
     monkeypatch.setattr("scipy.linalg.lu_solve", lambda matrix, values, **how: 0 * values)
     with pytest.raises(NoTorus, match="iterative refinement stops at a residual or update of 1e-1"):
         refine(orbit, digits=30)
@@ -123,7 +124,7 @@ def test_steps_that_gain_nothing_are_given_up(monkeypatch):
 
 def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
     """From the step it ended at, and on to more digits; also from an orbit of fewer."""
-    orbit, file, heard = breather_at_amplitude(Chain(6, alpha="0.4"), 2, "0.5"), tmp_path / "run", []
+    orbit, file, heard = symfpu.torus(Chain(6, alpha="0.4"), (2,), amplitudes={2: "0.5"}), tmp_path / "run", []
 
     def until_third(label, fraction):
         if label.startswith("step 2"):
@@ -147,7 +148,7 @@ def test_an_interrupted_run_goes_on_from_its_file(tmp_path):
 @pytest.mark.parametrize("amplitude", ["0.3", 1])
 def test_a_frequency_that_does_not_tell_the_amplitude_is_named(amplitude):
     """alpha, N = 4, seed 2: r^2 is the same on all bonds, so that no force is left but the linear one: omega = Omega_2."""
-    orbit = breather_at_amplitude(Chain(4, alpha="0.5"), 2, amplitude)
+    orbit = symfpu.torus(Chain(4, alpha="0.5"), (2,), amplitudes={2: amplitude})
     with pytest.raises(NoTorus, match=r"many amplitudes, .*: give the amplitudes"):
         refine(orbit, digits=20)
     precise = refine(orbit, digits=20, amplitudes={2: amplitude})

@@ -1,13 +1,17 @@
 """Tangent maps and multipliers of breathers against integrated variations, linear rotation, and their symmetries."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from symfpu import Chain, InputError, breather_at_amplitude, floquet, periodic_orbit
+import symfpu
+from symfpu import Chain, InputError, Torus, floquet, refine
 from symfpu.breathers.floquet import DOUBLING, ELLIPTIC, QUADRUPLE, TANGENT, TRIVIAL, monodromy
 from symfpu.dynamics.schemes import PARTICLE_SCHEMES
 from tests import tolerances
+from tests.breather import breather_of
 from tests.tolerances import EIGENVALUES, LAST_DIGIT, MAP_AT_REST, MONODROMY, PEER_ABSOLUTE, PEER_RELATIVE, TRACES, VARIATIONS
 
 FIG7 = (Chain(N=32, alpha="0.33"), 1, "0.0981410995944860")
@@ -46,7 +50,7 @@ def nearest(values, others):
 
 @pytest.mark.parametrize(("chain", "seed", "amplitude", "instabilities"), UNSTABLE, ids=repr)
 def test_unstable_orbits_agree_with_integrated_variations(chain, seed, amplitude, instabilities):
-    orbit = breather_at_amplitude(chain, seed, amplitude)
+    orbit = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     result, M = floquet(orbit), variations(orbit)
     assert result.instabilities == instabilities
     assert not result.stable
@@ -59,7 +63,8 @@ def test_unstable_orbits_agree_with_integrated_variations(chain, seed, amplitude
 
 @pytest.mark.parametrize("case", [FIG7, (Chain(8, alpha="0.4", beta="0.1"), 3, "1.13"), (Chain(6, beta=1), 5, "2.3")], ids=repr)
 def test_the_map_is_symplectic_and_reversible_and_has_the_pairs(case):
-    orbit = periodic_orbit(*case)
+    chain, seed, frequency = case
+    orbit = symfpu.torus(chain, (seed,), frequencies=(frequency,))
     result = floquet(orbit)
     n, M = orbit.chain.N - 1, result.monodromy
     J = np.block([[np.zeros((n, n)), np.eye(n)], [-np.eye(n), np.zeros((n, n))]])
@@ -78,7 +83,8 @@ def test_the_map_is_symplectic_and_reversible_and_has_the_pairs(case):
 
 def test_the_trivial_pair_is_the_flow():
     """M carries (P, -dH/dQ) to itself: the unstable double eigenvalue of M costs half the digits, the pair here none."""
-    result = floquet(periodic_orbit(*FIG7))
+    chain, seed, frequency = FIG7
+    result = floquet(symfpu.torus(chain, (seed,), frequencies=(frequency,)))
     flow = np.append(np.zeros(31), result.orbit.chain.accelerations(result.orbit.Q(0.0)))
     assert np.linalg.norm(result.monodromy @ flow - flow) < MONODROMY * np.linalg.norm(flow)
     assert result.kinds[0] == TRIVIAL
@@ -89,7 +95,7 @@ def test_the_trivial_pair_is_the_flow():
 
 @pytest.mark.parametrize("chain", [Chain(9, alpha="0.3"), Chain(9, beta="0.3")], ids=repr)
 def test_small_orbits_have_the_multipliers_of_rest(chain):
-    orbit = breather_at_amplitude(chain, 2, "1e-4")
+    orbit = symfpu.torus(chain, (2,), amplitudes={2: "1e-4"})
     result = floquet(orbit)
     angles = np.delete(chain.frequencies(), 1) * 2 * np.pi / float(orbit.frequency)
     assert result.stable
@@ -105,14 +111,16 @@ def test_a_pair_next_to_the_trivial_one_is_resolved():
     kappa = 8.8466496e-12, so multipliers 1 +- 5.9e-6."""
     guess = np.zeros((10, 15))
     guess[1, 0], guess[3, 2], guess[9, 10] = 0.9964710546771, 0.0039244872, -0.069215195
-    result = floquet(breather_at_amplitude(Chain(16, beta=1), 1, "0.9964710546771008", guess=guess))
+    chain, harmonics = Chain(16, beta=1), np.arange(10)[:, None]
+    near = Torus(chain, (1,), (Fraction("0.219"),), harmonics, guess)
+    result = floquet(refine(near, amplitudes={1: "0.9964710546771008"}))
     assert result.instabilities == {TANGENT: 1}
     place = result.kinds.index(TANGENT)
     assert abs(result.kappa[place] - 8.8466496e-12) < result.tolerance[place]
 
 
 def test_a_chain_of_one_particle_has_the_trivial_pair_only():
-    result = floquet(breather_at_amplitude(Chain(2, beta=1), 1, "0.5"))
+    result = floquet(symfpu.torus(Chain(2, beta=1), (1,), amplitudes={1: "0.5"}))
     assert result.multipliers.tolist() == [1, 1]
     assert result.stable
 
@@ -120,7 +128,7 @@ def test_a_chain_of_one_particle_has_the_trivial_pair_only():
 @pytest.mark.parametrize("name", PARTICLE_SCHEMES)
 def test_multipliers_by_another_scheme_agree_within_the_errors(name):
     """A chain of eight bonds, two of whose multipliers are off the circle; the estimated errors are those found."""
-    orbit = breather_at_amplitude(*UNSTABLE[3][:3])
+    orbit = breather_of(*UNSTABLE[3][:3])
     one, other = floquet(orbit), floquet(orbit, scheme=name)
     assert other.instabilities == one.instabilities
     assert nearest(other.multipliers[2:], one.multipliers) < tolerances.MAP_BY_SCHEME
@@ -130,5 +138,5 @@ def test_multipliers_by_another_scheme_agree_within_the_errors(name):
 
 @pytest.mark.parametrize("function", [floquet, monodromy])
 def test_what_is_no_orbit_is_refused(function):
-    with pytest.raises(InputError, match=r"^orbit = .*periodic_orbit"):
+    with pytest.raises(InputError, match=r"^orbit = .*torus"):
         function(np.ones((3, 5)))

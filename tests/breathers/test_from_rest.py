@@ -5,7 +5,8 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from symfpu import Chain, Event, NoBreatherAtEnergy, breather_at_amplitude, breather_at_energy, periodic_orbit
+import symfpu
+from symfpu import Chain, Event, NoBreatherAtEnergy
 from symfpu.breathers.curve import Linearisation
 from symfpu.breathers.equations import Balance
 from symfpu.breathers.from_rest import AVOIDED, FOLLOWED, PASSED, FromRest
@@ -16,10 +17,10 @@ NEAR_FIVE = Chain(8, beta=1)  # 5 omega_1 meets mode 7 near H = 0.15; three orbi
 
 def test_the_family_follows_the_wide_gap_of_harmonic_5():
     """A and c_7[5] are those of a continuation in all coefficients with steps of 0.005."""
-    orbit = breather_at_energy(NEAR_FIVE, 1, "0.171057")
+    orbit = symfpu.torus(NEAR_FIVE, (1,), energy="0.171057")
     assert orbit.amplitude == pytest.approx(1.41476, abs=SIX_PLACES)
     assert orbit.cosines[5, 6] == pytest.approx(-0.0814, abs=1e2 * SIX_PLACES)
-    assert breather_at_energy(NEAR_FIVE, 1, "0.3").amplitude == pytest.approx(1.580651, abs=SIX_PLACES)
+    assert symfpu.torus(NEAR_FIVE, (1,), energy="0.3").amplitude == pytest.approx(1.580651, abs=SIX_PLACES)
 
 
 # chain, seed, H: A, omega, harmonic, mode, coefficient. By pseudo-arclength in all coefficients of harmonic balance, steps of 0.005 from
@@ -34,21 +35,24 @@ DENSE = {
 def test_the_family_is_that_of_a_dense_continuation(name):
     """Far beyond the wide gaps of mode 7 and mode 16, whose harmonics grow to a quarter and a seventh of the amplitude."""
     chain, energy, amplitude, omega, harmonic, mode, coefficient = DENSE[name]
-    orbit = breather_at_energy(chain, 1, energy)
+    orbit = symfpu.torus(chain, (1,), energy=energy)
     assert orbit.amplitude == pytest.approx(amplitude, rel=TEN_PLACES)
     assert float(orbit.frequency) == pytest.approx(omega, rel=TEN_PLACES)
     assert orbit.cosines[harmonic, mode - 1] == pytest.approx(coefficient, rel=TEN_PLACES)
 
 
 def test_energy_amplitude_and_frequency_lead_to_one_orbit():
-    by_energy = breather_at_energy(NEAR_FIVE, 1, "0.2")
-    for other in (breather_at_amplitude(NEAR_FIVE, 1, by_energy.amplitude), periodic_orbit(NEAR_FIVE, 1, by_energy.frequency)):
+    by_energy = symfpu.torus(NEAR_FIVE, (1,), energy="0.2")
+    for other in (
+        symfpu.torus(NEAR_FIVE, (1,), amplitudes={1: by_energy.amplitude}),
+        symfpu.torus(NEAR_FIVE, (1,), frequencies=(by_energy.frequency,)),
+    ):
         assert other.energy() == pytest.approx(0.2, rel=SAME_ORBIT)
         assert other.cosines[5, 6] == pytest.approx(by_energy.cosines[5, 6], rel=SAME_ORBIT)
 
 
 def test_a_negative_amplitude_is_the_same_orbit_half_a_period_later():
-    orbit, other = (breather_at_amplitude(Chain(8, alpha="0.4"), 3, A) for A in ("0.4", "-0.4"))
+    orbit, other = (symfpu.torus(Chain(8, alpha="0.4"), (3,), amplitudes={3: A}) for A in ("0.4", "-0.4"))
     assert other.amplitude == -0.4
     assert (other.frequency, other.energy()) == (orbit.frequency, pytest.approx(orbit.energy(), rel=SAME_ORBIT))
     half = np.pi / float(orbit.frequency)
@@ -73,7 +77,7 @@ def test_a_narrow_gap_is_passed_and_named():
     before, after = walk.points[passage.after : passage.after + 2]
     assert before.amplitude < passage.gap.amplitude < after.amplitude
     assert after.index - before.index == 1
-    assert breather_at_amplitude(Chain(16, beta=1), 1, "0.8").residual() < PROMISED_RESIDUAL  # beyond it
+    assert symfpu.torus(Chain(16, beta=1), (1,), amplitudes={1: "0.8"}).residual() < PROMISED_RESIDUAL  # beyond it
 
 
 def test_a_wide_gap_is_followed_and_named():
@@ -103,7 +107,7 @@ def test_a_family_that_turns_back_at_a_gap_avoids_it():
     assert last.amplitude == pytest.approx(first.amplitude, abs=SIX_PLACES)
     assert max(p.amplitude for p in walk.points) == pytest.approx(4.834316, abs=1e4 * SIX_PLACES)
     with pytest.warns(UserWarning, match=r"A = 4\.83023 is the first orbit of this energy, .* again near A = 4\.5"):
-        orbit = breather_at_energy(chain, 1, "0.79")
+        orbit = symfpu.torus(chain, (1,), energy="0.79")
     assert orbit.amplitude == pytest.approx(4.830228, abs=SIX_PLACES)
 
 
@@ -113,7 +117,7 @@ def test_limit_and_steps_change_neither_gaps_nor_points(chain, monkeypatch):
     energy = "0.3" if chain == NEAR_FIVE else "0.05"
 
     def found():
-        return breather_at_energy(chain, 1, energy), walked(chain, 1, 12).passages
+        return symfpu.torus(chain, (1,), energy=energy), walked(chain, 1, 12).passages
 
     orbit, passages = found()
     for name, value in (("NARROW", 0.9e-3), ("NARROW", 1.1e-3), ("LONGEST", 0.7)):
@@ -139,7 +143,7 @@ def test_the_index_counts_the_negative_eigenvalues():
 def test_energies_beyond_a_turn_are_refused():
     """V = r^2/2 - r^4/4 has a maximum: no oscillation is above it."""
     with pytest.raises(NoBreatherAtEnergy, match="ended because") as failure:
-        breather_at_energy(Chain(4, beta=-1), 2, "5")
+        symfpu.torus(Chain(4, beta=-1), (2,), energy="5")
     assert failure.value.reached < 5
 
 
@@ -147,5 +151,5 @@ def test_an_orbit_of_the_walk_is_found_by_its_own_frequency():
     """Up to near a barrier, where energies are alike to rounding; what lies on a point of the walk has no direction from it."""
     chain = Chain(6, alpha="0.4")
     for point in list(islice(FromRest(chain, 4), 22))[9::4]:
-        found = periodic_orbit(chain, 4, point.balance.frequency(point.z))
+        found = symfpu.torus(chain, (4,), frequencies=(point.balance.frequency(point.z),))
         assert found.amplitude == pytest.approx(point.amplitude, rel=TEN_PLACES)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, breather_at_energy, refine, torus_at_energy
+import symfpu
+from symfpu import Chain, refine
 from symfpu.breathers.equations import Balance
 from symfpu.breathers.linearisation import NEAR_RESONANCE, NearResonances, WholeMatrix
 from tests.tolerances import PERIODIC_ORBIT, THOUSAND_ROUNDINGS
@@ -18,7 +19,7 @@ CASES = (
 
 @pytest.mark.parametrize(("chain", "seed", "amplitude"), CASES, ids=repr)
 def test_elimination_changes_neither_index_nor_solutions(chain, seed, amplitude):
-    orbit = breather_at_amplitude(chain, seed, amplitude)
+    orbit = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     balance = Balance(chain, seed, len(orbit.cosines) + 3)
     z = balance.vector(orbit.cosines, orbit.origin.sigma)
     places = balance.near_resonance(z, NEAR_RESONANCE)
@@ -35,7 +36,7 @@ def test_elimination_changes_neither_index_nor_solutions(chain, seed, amplitude)
 
 @pytest.mark.parametrize(("chain", "seed", "amplitude"), CASES, ids=repr)
 def test_own_divisors_are_the_diagonal(chain, seed, amplitude):
-    orbit = breather_at_amplitude(chain, seed, amplitude)
+    orbit = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     balance = Balance(chain, seed, len(orbit.cosines) - 1)
     z = balance.vector(orbit.cosines, orbit.origin.sigma)
     _, jacobian = balance.system(z)
@@ -47,8 +48,8 @@ def test_own_divisors_are_the_diagonal(chain, seed, amplitude):
 def test_breathers_of_long_chains_are_those_of_the_invariance_equation(N, energy):
     """From rest past narrow gaps, beside Newton's method from a series."""
     chain = Chain(N, alpha="0.33")
-    breather = breather_at_energy(chain, 1, energy)
-    near = torus_at_energy(chain, (1,), energy, harmonic=False, order=8)
+    breather = symfpu.torus(chain, (1,), energy=energy)
+    near = symfpu.torus(chain, (1,), energy=energy, method="series", order=8)
     expected = refine(near, energy=energy)
     assert breather.amplitude == pytest.approx(float(expected.amplitude), rel=PERIODIC_ORBIT)
     assert float(breather.frequency) == pytest.approx(float(expected.frequency), rel=PERIODIC_ORBIT)

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_amplitude, floquet, lindstedt, solve_amplitudes, toda_torus, unfold
+from symfpu import Chain, InputError, floquet, lindstedt, solve_amplitudes, toda_torus, unfold
 from symfpu.breathers.floquet import ELLIPTIC, TANGENT, TRIVIAL, monodromy
 from symfpu.dynamics.kahan_li8 import KAHAN_LI8
 from symfpu.dynamics.tangent import real_waves, tangent_steps
@@ -52,7 +52,7 @@ def until_it_is_shifted(orbit):
 
 @pytest.mark.parametrize(("N", "q", "A", "law"), [*CASES, *(pytest.param(*case, marks=pytest.mark.long) for case in LONG)])
 def test_the_map_of_a_period_is_a_power_of_the_map_up_to_a_shift(N, q, A, law):
-    orbit = breather_at_amplitude(ring(N, **law), q, A)
+    orbit = symfpu.torus(ring(N, **law), (q,), amplitudes={q: A})
     part, shift = until_it_is_shifted(orbit)
     power = shift @ np.linalg.matrix_power(part, N // math.gcd(q, N))
     found = floquet(orbit)
@@ -68,7 +68,7 @@ def test_the_map_of_a_period_is_a_power_of_the_map_up_to_a_shift(N, q, A, law):
 )
 def test_waves_of_toda_are_stable_with_the_normal_frequencies_of_the_curve(N, q, A):
     chain = ring(N, **TODA)
-    orbit = breather_at_amplitude(chain, q, A)
+    orbit = symfpu.torus(chain, (q,), amplitudes={q: A})
     found = floquet(orbit)
     assert found.stable
     curve = toda_torus(chain, (q,), frequencies=orbit.frequencies, digits=20)
@@ -83,7 +83,7 @@ def test_waves_of_toda_are_stable_with_the_normal_frequencies_of_the_curve(N, q,
 @pytest.mark.parametrize("A", ["0.2", "0.5", "1.5"])
 def test_of_mode_half_N_of_beta_every_mode_has_a_hill_equation(A):
     """All r_j^2 are equal: Q_q'' = -Omega_q^2 (1 + 3 beta r^2) Q_q, one by one."""
-    orbit = breather_at_amplitude(ring(8, beta=1), 4, A)
+    orbit = symfpu.torus(ring(8, beta=1), (4,), amplitudes={4: A})
     found = floquet(orbit)
     period = 2 * np.pi / float(orbit.frequency)
     start = [orbit.x(0.0)[0], orbit.p(0.0)[0]]
@@ -103,7 +103,7 @@ def test_of_mode_half_N_of_beta_every_mode_has_a_hill_equation(A):
 
 
 def test_an_unfolded_breather_has_the_multipliers_of_fixed_ends_among_its_own():
-    fixed = symfpu.breather_at_amplitude(Chain(4, beta=1), 3, "1")
+    fixed = symfpu.torus(Chain(4, beta=1), (3,), amplitudes={3: "1"})
     there, here = floquet(unfold(fixed)), floquet(fixed)
     for multiplier in here.multipliers:
         assert np.abs(there.multipliers - multiplier).min() < MONODROMY

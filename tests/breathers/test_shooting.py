@@ -4,7 +4,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, periodic_orbit
+import symfpu
+from symfpu import Chain
 from tests.oracles.oscillators import duffing
 from tests.oracles.shooting import shoot
 from tests.tolerances import NEWTON_RESIDUAL, SAME_ORBIT, SHOT_AMPLITUDE
@@ -23,13 +24,13 @@ CASES = (
 def from_the_linear_mode(chain, seed, frequency):
     """The seed alone, with the amplitude of the orbit to a tenth."""
     guess = np.zeros(chain.N - 1)
-    guess[seed - 1] = 1.1 * periodic_orbit(chain, seed, frequency).amplitude
+    guess[seed - 1] = 1.1 * symfpu.torus(chain, (seed,), frequencies=(frequency,)).amplitude
     return shoot(chain, seed, frequency, guess)
 
 
 @pytest.mark.parametrize(("chain", "seed", "frequency"), CASES, ids=repr)
 def test_harmonic_balance_finds_the_orbit_of_shooting(chain, seed, frequency):
-    shot, orbit = from_the_linear_mode(chain, seed, frequency), periodic_orbit(chain, seed, frequency)
+    shot, orbit = from_the_linear_mode(chain, seed, frequency), symfpu.torus(chain, (seed,), frequencies=(frequency,))
     assert shot.start == pytest.approx(orbit.Q(0.0), abs=SHOT_AMPLITUDE * np.max(np.abs(shot.start)))
     assert chain.energy(shot.start, 0 * shot.start) == pytest.approx(orbit.energy(), rel=2 * SHOT_AMPLITUDE)
     assert shot.closure < NEWTON_RESIDUAL
@@ -44,13 +45,13 @@ def test_one_mode_of_beta_turns_where_the_duffing_oscillator_turns(N, seed):
     expected = np.zeros(N - 1)
     expected[seed - 1] = 1
     assert shoot(chain, seed, omega, 1.1 * expected).start == pytest.approx(expected, abs=NEWTON_RESIDUAL)
-    assert periodic_orbit(chain, seed, mpmath.nstr(omega, 25)).Q(0.0) == pytest.approx(expected, abs=NEWTON_RESIDUAL)
+    assert symfpu.torus(chain, (seed,), frequencies=(mpmath.nstr(omega, 25),)).Q(0.0) == pytest.approx(expected, abs=NEWTON_RESIDUAL)
 
 
 @pytest.mark.parametrize(("chain", "seed", "amplitude"), [(ALPHA, 1, "1.27"), (Chain(8, alpha="0.4"), 2, "0.3")])
 def test_orbits_far_from_rest(chain, seed, amplitude):
     """Seed 2: the odd modes, which the symmetry forbids, are not taken from the guess."""
-    orbit = breather_at_amplitude(chain, seed, amplitude)
+    orbit = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     shot = shoot(chain, seed, orbit.frequency, 1.001 * orbit.Q(0.0) + (1e-3 if seed == 2 else 0.0))
     assert shot.start == pytest.approx(orbit.Q(0.0), abs=SAME_ORBIT)
     assert seed == 1 or not orbit.Q(0.0)[::2].any()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import BundleError, Chain, alignment_indices, family, integrate, lindstedt, load, periodic_orbit, refine, save, solve_amplitudes
+from symfpu import BundleError, Chain, alignment_indices, family, integrate, lindstedt, load, refine, save, solve_amplitudes
 from symfpu.files.archive import SCHEMA
 from symfpu.proofs.check_propagation import verify
 from tests.bundles.test_bundle_damage import forged
@@ -37,7 +37,7 @@ def series_in(file):
 
 
 def result_in(file):
-    return load(file) if file.exists() else save(file, symfpu.floquet(periodic_orbit(ALPHA, 1, "0.3905")))
+    return load(file) if file.exists() else save(file, symfpu.floquet(symfpu.torus(ALPHA, (1,), frequencies=("0.3905",))))
 
 
 @pytest.mark.parametrize("reader", [orbit_in, indices_in, digits_in, series_in, result_in])

@@ -14,7 +14,7 @@ import psutil
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_amplitude, periodic_orbit, prove_existence, refine
+from symfpu import Chain, InputError, prove_existence, refine
 from symfpu.breathers.equations import Balance
 from symfpu.certified.bond_balls import SPARE_BITS, BondBalls
 from symfpu.certified.contraction import Attempt, places_of
@@ -24,6 +24,7 @@ from symfpu.certified.rounded_orbit import rounded_orbit
 from symfpu.proofs import check_existence
 from symfpu.proofs.reading import dyadic
 from symfpu.reports.existence import existence_text
+from tests.breather import breather_of
 from tests.proofs.certificate_files import bounds_of
 from tests.tolerances import (
     FREE,
@@ -64,8 +65,9 @@ GIVEN = {
 @cache
 def orbit(name):
     if "energy" in GIVEN.get(name, {}):
-        return symfpu.breather_at_energy(*CASES[name][:2], GIVEN[name]["energy"])
-    return breather_at_amplitude(*CASES[name])
+        chain, seed = CASES[name][:2]
+        return symfpu.torus(chain, (seed,), energy=GIVEN[name]["energy"])
+    return breather_of(*CASES[name])
 
 
 @cache
@@ -139,9 +141,9 @@ def test_members_of_a_segment_are_on_its_line(given):
     found = prove_existence(middle, **dict.fromkeys(given, value), half_width=width)
     for s in (-1, Fraction(1, 2), 1):
         member = {
-            "frequency": lambda x: periodic_orbit(middle.chain, 1, x, guess=middle),
-            "amplitude": lambda x: breather_at_amplitude(middle.chain, 1, x),
-            "energy": lambda x: symfpu.breather_at_energy(middle.chain, 1, x),
+            "frequency": lambda x: refine(middle, frequencies=(x,)),
+            "amplitude": lambda x: symfpu.torus(middle.chain, (1,), amplitudes={1: x}),
+            "energy": lambda x: symfpu.torus(middle.chain, (1,), energy=x),
         }[kind](value + s * width)
         rows = stretches_of(member)
         centre = rows_of(found, "orbit", len(rows))
@@ -160,12 +162,12 @@ def test_a_fold_in_omega_is_an_ordinary_point_of_its_amplitude(tmp_path):
     The segment about it holds the fold: its ends have higher frequencies than its middle, by proof.
     """
     chain, A, width = Chain(2, potential="poly:0,-1,0,3/2"), Fraction("0.633383"), Fraction(1, 200)
-    fold = breather_at_amplitude(chain, 1, A)
+    fold = symfpu.torus(chain, (1,), amplitudes={1: A})
     alone, given = prove_existence(fold), prove_existence(fold, amplitude=A)
     assert alone.unique < SQUEEZED < FREE < given.unique
     assert checked(prove_existence(fold, amplitude=A, half_width=width), tmp_path)
     for end in (A - width, A + width):
-        proved = prove_existence(breather_at_amplitude(chain, 1, end), amplitude=end)
+        proved = prove_existence(symfpu.torus(chain, (1,), amplitudes={1: end}), amplitude=end)
         rise = proved.frequency - given.frequency
         assert rise > proved.frequency_radius + given.frequency_radius
 
@@ -190,7 +192,8 @@ WAVES = {
 def wave(chain, seed, made):
     """Of an amplitude or an energy."""
     [(name, value)] = made.items()
-    return getattr(symfpu, f"breather_at_{name}")(chain, seed, value)
+    asked = {"amplitudes": {seed: value}} if name == "amplitude" else {name: value}
+    return symfpu.torus(chain, (seed,), **asked)
 
 
 @cache
@@ -326,7 +329,7 @@ def test_the_wave_of_the_toda_ring_is_where_the_theorem_says(N, q):
     """Against Jacobi's elliptic functions: frequency given to 40 places, amplitude and stretch from the closed form."""
     with mpmath.workdps(50):
         omega, cosines = cnoidal(N, abs(q), mpmath.mpf(1), mpmath.mpf("0.3"))  # toda:1/2 has exp(r)
-        wave = periodic_orbit(Chain(N, potential="toda:1/2", ends="periodic"), q, mpmath.nstr(omega, 40))
+        wave = symfpu.torus(Chain(N, potential="toda:1/2", ends="periodic"), (q,), frequencies=(mpmath.nstr(omega, 40),))
         found = prove_existence(wave)
         linear = 2 * mpmath.sin(mpmath.pi * abs(q) / N)
         A = mpmath.sqrt(N) * cosines[1] / linear
@@ -353,7 +356,7 @@ def test_members_of_a_segment_of_waves_are_in_its_intervals(tmp_path):
     found = prove_existence(wave(chain, seed, made), amplitude="0.5", half_width=width)
     assert "for every amplitude A" in checked(found, tmp_path)[0]
     for s in (-1, Fraction(1, 3), 1):
-        member = breather_at_amplitude(chain, seed, Fraction("0.5") + s * width)
+        member = symfpu.torus(chain, (seed,), amplitudes={seed: Fraction("0.5") + s * width})
         assert abs(member.frequency - found.frequency) < found.frequency_radius
         assert abs(member.energy() - float(found.energy)) < found.energy_radius
 
@@ -362,9 +365,9 @@ def test_what_the_theorem_is_not_about_is_refused():
     with pytest.raises(InputError, match="half the ring with fixed ends"):
         prove_existence(symfpu.unfold(orbit("alpha")))
     with pytest.raises(InputError, match="a chain with fixed ends"):
-        symfpu.prove_stability(breather_at_amplitude(Chain(6, alpha="0.3", ends="periodic"), 1, "0.1"))
+        symfpu.prove_stability(symfpu.torus(Chain(6, alpha="0.3", ends="periodic"), (1,), amplitudes={1: "0.1"}))
     with pytest.raises(InputError, match="polynomial"):
-        prove_existence(breather_at_amplitude(Chain(4, potential=symfpu.from_expression("1 - cos(r)")), 1, "0.1"))
+        prove_existence(symfpu.torus(Chain(4, potential=symfpu.from_expression("1 - cos(r)")), (1,), amplitudes={1: "0.1"}))
     torus = symfpu.solve_amplitudes(symfpu.lindstedt(Chain(8, alpha="0.3"), (1, 2), ("0.3905", "0.7663"), 2))
     with pytest.raises(InputError, match="2 angles"):
         prove_existence(torus)
@@ -380,13 +383,13 @@ def test_what_the_theorem_is_not_about_is_refused():
 
 @cache
 def of_figure(seed, omega):
-    return refine(periodic_orbit(FIG9, seed, omega), digits=32)
+    return refine(symfpu.torus(FIG9, (seed,), frequencies=(omega,)), digits=32)
 
 
 @cache
 def of_energy(energy):
     """At H = 0.75 the family from rest follows harmonic 14 of mode 16, and has 115 harmonics."""
-    return refine(symfpu.breather_at_energy(FIG9, 1, energy), digits=30)
+    return refine(symfpu.torus(FIG9, (1,), energy=energy), digits=30)
 
 
 FIGURE_9 = (of_figure, 1, "0.09844127049688513")

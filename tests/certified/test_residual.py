@@ -7,7 +7,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, breather_at_amplitude, prove_residual, refine, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, InputError, prove_residual, refine
 from symfpu.certified.rounded_torus import polynomial_of, rounded_torus
 from symfpu.certified.series import Series, product
 from symfpu.reports.certified import residual_proof_text
@@ -145,8 +146,8 @@ def test_powers_of_any_degree_are_within_their_error():
 
 def test_what_it_is_not_about_is_refused_by_name():
     with pytest.raises(InputError, match="prove_existence"):
-        prove_residual(breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.1"))
-    guess = torus_at_amplitudes(Chain(3, potential="toda:1/2"), AMPLITUDES, order=4)
+        prove_residual(symfpu.torus(Chain(4, alpha="0.3"), (1,), amplitudes={1: "0.1"}))
+    guess = symfpu.torus(Chain(3, potential="toda:1/2"), tuple(AMPLITUDES), amplitudes=AMPLITUDES, method="series", order=4)
     with pytest.raises(InputError, match="poly"):
         prove_residual(guess)
     with pytest.raises(InputError):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, NoStabilityProof, breather_at_amplitude, floquet, periodic_orbit, prove_existence, prove_stability
+from symfpu import Chain, InputError, NoStabilityProof, floquet, prove_existence, prove_stability
 from symfpu.certified import enclosures, exponents
 from symfpu.certified.enclosures import check_count, enclosed_exponent, slopes_of
 from symfpu.certified.exponent_bounds import Attempt
@@ -17,6 +17,7 @@ from symfpu.certified.sectors import sectors_of
 from symfpu.certified.stability_proof import Interval, gaps_of, orbit_of
 from symfpu.numbers.one_sided import above, below
 from symfpu.proofs import check_stability
+from tests.breather import breather_of
 from tests.tolerances import MOVED_INVERSE, MULTIPLIER_OF_PROOF, ROUNDING_OF_RESIDUAL, SAME_BOUNDS
 
 STABLE = {
@@ -48,7 +49,7 @@ FIGURES = {"fig 9": (1, "0.09844127049688513"), "fig 8": (25, "1.883074184708853
 
 @cache
 def orbit(name):
-    return breather_at_amplitude(*(STABLE | UNSTABLE)[name])
+    return breather_of(*(STABLE | UNSTABLE)[name])
 
 
 @cache
@@ -205,7 +206,7 @@ def test_what_the_theorem_is_not_about_is_refused():
 @cache
 def middle_mode():
     """Mode N/2 in alpha alone moves harmonically: every amplitude has the frequency sqrt(2)."""
-    return breather_at_amplitude(Chain(4, alpha="1/2"), 2, "1")
+    return symfpu.torus(Chain(4, alpha="1/2"), (2,), amplitudes={2: "1"})
 
 
 @pytest.mark.parametrize("given", [{"amplitude": "1"}, {"energy": "1"}])
@@ -268,7 +269,8 @@ def both_of(slopes, changed):
 @pytest.mark.parametrize(("name", "size", "gap"), [("fig 8", 60_000, 0.0), ("fig 7", 60_000, 0.0), ("fig 9", 100_000, 0.0015)])
 def test_the_breathers_of_the_figures_are_stable(name, size, gap, tmp_path):
     """Fig. 9 takes three minutes: the theorem of docs/existence.md, of the largest orbit and the narrowest gap."""
-    found = prove_stability(periodic_orbit(FIG, *FIGURES[name]))
+    seed, frequency = FIGURES[name]
+    found = prove_stability(symfpu.torus(FIG, (seed,), frequencies=(frequency,)))
     assert found.stable
     assert len(found.exponents) == 30
     assert found.gaps[0].least > gap

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, NoStayProof, prove_stay, refine, torus_at_amplitudes
+from symfpu import Chain, InputError, NoStayProof, prove_stay, refine
 from symfpu.certified.frame import directions_of
 from symfpu.certified.growth import Growth
 from symfpu.certified.norms import norms, weights_of
@@ -41,7 +41,7 @@ def test_a_frame_takes_all_modes(monkeypatch):
     found = _Search.mode
     monkeypatch.setattr(_Search, "mode", lambda search, q, *rest: None if q == 3 else found(search, q, *rest))
     with pytest.raises(symfpu.NoNormalModes, match="continues mode 3"):
-        directions_of(symfpu.breather_at_amplitude(Chain(4, alpha="0.3"), 2, "0.1"), silent)
+        directions_of(symfpu.torus(Chain(4, alpha="0.3"), (2,), amplitudes={2: "0.1"}), silent)
 
 
 def taylor(torus, time, step, order=20, digits=30):
@@ -163,7 +163,7 @@ def test_the_time_is_below_that_of_the_scalar_equation():
 def test_a_hyperbolic_torus_is_refused_by_name():
     """Seeds 1 and 5 of N = 8, beta = 1 (docs/normal-modes.md)."""
     sizes = {1: "0.1", 5: "0.7"}
-    guess = torus_at_amplitudes(Chain(8, beta=1), sizes, order=6)
+    guess = symfpu.torus(Chain(8, beta=1), tuple(sizes), amplitudes=sizes, method="series", order=6)
     with pytest.raises(InputError, match="elliptic"):
         prove_stay(refine(guess, amplitudes=sizes))
 

@@ -4,7 +4,8 @@ from functools import cache
 
 import mpmath
 
-from symfpu import Chain, Torus, refine, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, Torus, refine
 
 AMPLITUDES = {1: "0.2", 2: "0.1"}
 
@@ -12,7 +13,7 @@ AMPLITUDES = {1: "0.2", 2: "0.1"}
 @cache
 def torus(N=3, **law):
     """Refined, with two angles."""
-    guess = torus_at_amplitudes(Chain(N, **law or {"alpha": "0.3"}), AMPLITUDES, order=4)
+    guess = symfpu.torus(Chain(N, **law or {"alpha": "0.3"}), tuple(AMPLITUDES), amplitudes=AMPLITUDES, method="series", order=4)
     return refine(guess, amplitudes=AMPLITUDES)
 
 

@@ -14,7 +14,7 @@ RING = Chain(8, alpha="0.3", ends="periodic")
 SIZES = (2, 3, 4, 5, 8, 9)
 
 TAKE_RINGS = {"lindstedt", "series_bytes", "integrate", "alignment_indices", "seconds_needed"}
-TAKE_RINGS |= {"family", "toda_gaps", "toda_invariants", "toda_torus", "periodic_orbit", "breather_at_amplitude", "breather_at_energy"}
+TAKE_RINGS |= {"family", "toda_gaps", "toda_invariants", "toda_torus", "torus"}
 TAKE_RINGS |= {"packet_state", "particle_state", "random_state", "read_state", "normal_frequency_series"}
 
 

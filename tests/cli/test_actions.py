@@ -2,12 +2,13 @@
 
 import pytest
 
-from symfpu import Chain, actions, breather_at_amplitude, lindstedt, refine, save, solve_amplitudes, torus_at_amplitudes, twist
+import symfpu
+from symfpu import Chain, actions, lindstedt, refine, save, solve_amplitudes, twist
 from tests.cli.running import answer, shown
 
 
 def test_every_digit_is_in_the_record_and_lines_are_for_a_reader(tmp_path, capsys):
-    orbit = breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.3")
+    orbit = symfpu.torus(Chain(4, alpha="0.3"), (1,), amplitudes={1: "0.3"})
     file = save(tmp_path / "orbit.symfpu", orbit)
     found, expected = answer(capsys, "actions", file), twist(orbit)
     assert found["actions"] == {"1": repr(actions(orbit)[1])}
@@ -30,7 +31,7 @@ def test_a_ring_has_actions_alone_until_it_is_refined(tmp_path, capsys):
 
 
 def test_a_series_has_actions_alone(tmp_path, capsys):
-    torus = torus_at_amplitudes(Chain(4, alpha="0.3"), {1: "0.5"}, 2)
+    torus = symfpu.torus(Chain(4, alpha="0.3"), (1,), amplitudes={1: "0.5"}, method="series", order=2)
     found = answer(capsys, "actions", save(tmp_path / "torus.symfpu", torus))
     assert found["actions"] == {"1": repr(float(actions(torus)[1]))}
     assert "twist" not in found

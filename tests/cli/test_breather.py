@@ -5,7 +5,8 @@ from shlex import split
 import numpy as np
 import pytest
 
-from symfpu import Chain, HarmonicBalance, IterativeRefinement, breather_at_amplitude, floquet, load, periodic_orbit
+import symfpu
+from symfpu import Chain, HarmonicBalance, IterativeRefinement, floquet, load
 from tests.cli.running import answer, shown
 from tests.tolerances import FIXED_ENERGY, PROMISED_RESIDUAL, RELATIVE_SHIFT
 
@@ -15,7 +16,7 @@ WORDS = split("breather -N 8 --alpha 0.3 --seed 1")
 
 def test_by_frequency(capsys, tmp_path):
     found = answer(capsys, *WORDS, "--omega", "0.3905", "-o", tmp_path / "orbit")
-    orbit = periodic_orbit(CHAIN, 1, "0.3905")
+    orbit = symfpu.torus(CHAIN, (1,), frequencies=("0.3905",))
     assert found["frequencies"] == {"1": "0.3905"}
     assert found["amplitudes"] == {"1": repr(orbit.amplitude)}
     assert found["energy"] == repr(float(orbit.energy()))
@@ -60,7 +61,7 @@ def test_many_digits(capsys, tmp_path):
 
 def test_multipliers(capsys):
     found = answer(capsys, *WORDS, "--amplitude", "0.4", "--multipliers")
-    expected = floquet(breather_at_amplitude(CHAIN, 1, "0.4"))
+    expected = floquet(symfpu.torus(CHAIN, (1,), amplitudes={1: "0.4"}))
     values = np.array([complex(float(x), float(y)) for x, y in found["multipliers"]])
     assert (values == expected.multipliers).all()
     assert (found["stable"], found["instabilities"], found["largest_multiplier"]) == (True, {}, 1.0)

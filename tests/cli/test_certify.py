@@ -2,14 +2,16 @@
 
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, lindstedt, save, solve_amplitudes
+import symfpu
+from symfpu import Chain, lindstedt, save, solve_amplitudes
+from tests.breather import breather_of
 from tests.cli.running import answer, refusal, run, shown
 from tests.results import two_angles
 
 
 @pytest.fixture
 def saved(tmp_path):
-    return save(tmp_path / "breather", breather_at_amplitude(Chain(2, beta=1), 1, "0.3"))
+    return save(tmp_path / "breather", symfpu.torus(Chain(2, beta=1), (1,), amplitudes={1: "0.3"}))
 
 
 STABLE = (Chain(4, alpha="0.3"), 1, "0.2")
@@ -22,7 +24,7 @@ THEOREMS = {
 @pytest.mark.parametrize("name", THEOREMS)
 def test_a_saved_breather_becomes_a_certificate_that_verify_accepts(name, tmp_path, capsys):
     of, options, said, theorem = THEOREMS[name]
-    certificate, file = tmp_path / "proof.json", save(tmp_path / "breather", breather_at_amplitude(*of))
+    certificate, file = tmp_path / "proof.json", save(tmp_path / "breather", breather_of(*of))
     lines = shown(capsys, "certify", file, *options, "-o", certificate).splitlines()
     assert lines[0].endswith(said)
     assert lines[-1] == f"certificate: {certificate}"
@@ -33,7 +35,7 @@ def test_a_saved_breather_becomes_a_certificate_that_verify_accepts(name, tmp_pa
 
 def test_stability_at_an_amplitude(tmp_path, capsys):
     """Mode N/2 in alpha has one frequency at every amplitude."""
-    saved, certificate = save(tmp_path / "breather", breather_at_amplitude(Chain(4, alpha="1/2"), 2, 1)), tmp_path / "proof.json"
+    saved, certificate = save(tmp_path / "breather", symfpu.torus(Chain(4, alpha="1/2"), (2,), amplitudes={2: 1})), tmp_path / "proof.json"
     out = shown(capsys, "certify", saved, "--stability", "--amplitude", "1", "-o", certificate)
     assert "seed 2, A=1, omega = 1.414213562" in out
     assert "linearly unstable" in shown(capsys, "verify", certificate)
@@ -41,7 +43,7 @@ def test_stability_at_an_amplitude(tmp_path, capsys):
 
 def test_json_says_stable_or_unstable(tmp_path, capsys):
     for of, stable in ((STABLE, True), ((Chain(6, beta=1), 4, "0.6"), False)):
-        found = answer(capsys, "certify", save(tmp_path / f"{stable}", breather_at_amplitude(*of)), "--stability")
+        found = answer(capsys, "certify", save(tmp_path / f"{stable}", breather_of(*of)), "--stability")
         assert found["stable"] is stable
         assert ("linearly stable" in found["theorem"]) is stable
         assert all(0 < least < most for least, most in found["gaps"])
@@ -60,7 +62,7 @@ def test_an_amplitude_and_a_segment_are_given_in_words(saved, tmp_path, capsys):
 
 def test_a_segment_too_long_is_one_line_and_code_1(saved, capsys):
     assert "a shorter segment can" in refusal(capsys, "certify", saved, "--half-width", "0.5", code=1)
-    assert "breather_at_amplitude" in refusal(capsys, "certify", saved, "--amplitude", "0.2")
+    assert "torus" in refusal(capsys, "certify", saved, "--amplitude", "0.2")
 
 
 @pytest.mark.long

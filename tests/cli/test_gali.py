@@ -13,7 +13,8 @@ from shlex import split
 
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, lindstedt, save, solve_amplitudes
+import symfpu
+from symfpu import Chain, lindstedt, save, solve_amplitudes
 from symfpu.normal.search import _Search
 from tests.cli.running import answer, refusal, run, shown
 from tests.tolerances import COMMANDED_SECONDS, FORETOLD, GALI_SLOPE, VOLUME_BY_SCHEME
@@ -138,7 +139,7 @@ def test_an_estimate_grows_with_the_time_and_computes_nothing(capsys, kept, tmp_
 
 def test_what_the_torus_foretells_stands_beside(capsys, tmp_path):
     """The closed form and the integrated frame of the same random vectors."""
-    file, picture = save(tmp_path / "breather", breather_at_amplitude(Chain(4, beta=1), 2, "0.4")), tmp_path / "gali.png"
+    file, picture = save(tmp_path / "breather", symfpu.torus(Chain(4, beta=1), (2,), amplitudes={2: "0.4"})), tmp_path / "gali.png"
     arguments = ["gali", file, *split("--time 100 --vectors 3 --frames 1 --step 0.05 --foretold")]
     record = answer(capsys, *arguments, "--plot", picture, "-o", tmp_path / "out")["foretold"]
     assert record["asymptotic_slopes"] == {"2": -1, "3": -2}
@@ -151,7 +152,7 @@ def test_what_the_torus_foretells_stands_beside(capsys, tmp_path):
 
 
 def test_waves_of_a_ring_foretell(capsys, tmp_path):
-    file = save(tmp_path / "wave", breather_at_amplitude(Chain(5, beta=1, ends="periodic"), 1, "0.4"))
+    file = save(tmp_path / "wave", symfpu.torus(Chain(5, beta=1, ends="periodic"), (1,), amplitudes={1: "0.4"}))
     words = split("--time 100 --vectors 3 --frames 1 --step 0.05 --foretold")
     assert answer(capsys, "gali", file, *words)["foretold"]["largest_difference"] < FORETOLD
 
@@ -166,6 +167,6 @@ def test_only_tori_foretell(capsys, kept):
 def test_it_foretells_by_all_normal_modes(capsys, tmp_path, monkeypatch):
     """One that cannot be told from others is named."""
     file, found = tmp_path / "breather", _Search.mode
-    save(file, breather_at_amplitude(Chain(4, beta=1), 2, "0.4"))
+    save(file, symfpu.torus(Chain(4, beta=1), (2,), amplitudes={2: "0.4"}))
     monkeypatch.setattr(_Search, "mode", lambda search, q, *rest: None if q == 3 else found(search, q, *rest))
     assert "continues mode 3" in refusal(capsys, "gali", file, "--time", "300", "--foretold", code=1)

@@ -6,7 +6,8 @@ import os
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, integrate, load, prove_existence, prove_propagation, save, sweep
+import symfpu
+from symfpu import Chain, integrate, load, prove_existence, prove_propagation, save, sweep
 from tests.cli.running import answer, refusal, shown
 from tests.tolerances import COARSE_STEP_ERROR, NEWTON_RESIDUAL
 from tests.tori.solutions import CASES
@@ -17,7 +18,7 @@ RUN = (Chain(4, beta=1), [0.1, 0, 0], [0, 0, 0], 10)
 @pytest.fixture(scope="module")
 def files(tmp_path_factory, threads):
     folder = tmp_path_factory.mktemp("files")
-    prove_existence(breather_at_amplitude(Chain(3, alpha="0.3"), 1, "0.1")).write(folder / "proof")
+    prove_existence(symfpu.torus(Chain(3, alpha="0.3"), (1,), amplitudes={1: "0.1"})).write(folder / "proof")
     integrate(*RUN, step=0.125, file=folder / "checkpoint")
     save(folder / "orbit", integrate(*RUN, step=0.125))
     sweep(pow, [{"base": 2, "exp": 3}], executor=threads, file=folder / "sweep")

@@ -4,7 +4,8 @@ import shlex
 
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, lindstedt, save, solve_amplitudes
+import symfpu
+from symfpu import Chain, lindstedt, save, solve_amplitudes
 from symfpu.cli.main import main
 from tests.cli.running import refusal
 
@@ -101,9 +102,9 @@ REFUSED = {
     BREATHER: "exactly one of --omega, --amplitude and --energy; give one of them",
     f"{BREATHER} --omega 0.39 --energy 0.01 --amplitude 1": "exactly one of",
     f"{BREATHER} --energy=-0.01": "energy = '-0.01': allowed is a positive number",
-    f"{BREATHER} --omega=-1": "frequency = '-1'",
-    f"{BREATHER} --amplitude 0": "amplitude = '0'",
-    f"{BREATHER} --amplitude much": "amplitude = 'much'",
+    f"{BREATHER} --omega=-1": "frequencies, omega_1 = '-1'",
+    f"{BREATHER} --amplitude 0": "amplitudes = {1: '0'}",
+    f"{BREATHER} --amplitude much": "amplitudes, 1 = 'much'",
     f"{BREATHER} --omega 0.3905 --digits 0": "digits = 0",
     f"{BREATHER} --omega 0.3905 --seed 8": "seeds = 8",
     f"{BREATHER} --omega 0.3905 --seed one": "seed = 'one'",
@@ -196,7 +197,7 @@ def files(tmp_path_factory):
     ring = folder / "ring.symfpu"
     waves = "solve -N 16 --ends periodic --beta 1 --seeds=1,-3 --omega 0.3904,1.1116 --order 4"
     assert main([*shlex.split(waves), "-o", str(ring)]) == 0
-    breather = breather_at_amplitude(Chain(3, alpha="0.3"), 1, "0.1")
+    breather = symfpu.torus(Chain(3, alpha="0.3"), (1,), amplitudes={1: "0.1"})
     solutions = {"FILE": torus, "ORBIT": breather}
     return {word: str(save(folder / word, solution)) for word, solution in solutions.items()} | {"RING": str(ring)}
 

@@ -2,14 +2,15 @@
 
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, normal_modes, save
+import symfpu
+from symfpu import Chain, normal_modes, save
 from tests.cli.running import answer, shown
 from tests.tolerances import NORMAL_CONVERGED
 
 
 @pytest.fixture
 def saved(tmp_path):
-    breather = breather_at_amplitude(Chain(4, beta=1), 2, "0.1")
+    breather = symfpu.torus(Chain(4, beta=1), (2,), amplitudes={2: "0.1"})
     return breather, str(save(tmp_path / "breather", breather))
 
 
@@ -41,7 +42,7 @@ def test_a_line_of_tori_is_kept_drawn_and_gone_on_with(saved, tmp_path, capsys):
     assert "no events" in out
     assert picture.exists()
     record = answer(capsys, *line)
-    breather = breather_at_amplitude(Chain(4, beta=1), 2, "0.2")
+    breather = symfpu.torus(Chain(4, beta=1), (2,), amplitudes={2: "0.2"})
     sigma = {str(q): pytest.approx(w, abs=NORMAL_CONVERGED) for q, w in normal_modes(breather).frequencies.items()}
     assert {q: float(w) for q, w in record["members"][1]["normal_frequencies"].items()} == sigma
     assert record["events"] == []

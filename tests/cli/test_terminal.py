@@ -167,7 +167,7 @@ def test_the_interrupt_key_says_what_is_kept():
 MEMBERS = "members found so far are kept in out; the same command goes on"
 INTERRUPTED = {
     "prove -N 6 --seeds 1,2 --order 2": ("proofs.prove_propagation", "nothing is kept"),
-    " ".join(SOLVE): ("solve.lindstedt", "nothing is kept"),
+    " ".join(SOLVE): ("solve.series_torus", "nothing is kept"),
     "sweep --order 1 --file cases": ("proofs.sweep_propagation", "cases decided so far are kept in cases"),
     "sweep --order 1": ("proofs.sweep_propagation", "nothing is kept"),
     "family -N 8 --alpha 0.4 --seeds 3 --to-energy 0.05 -o out": ("families.family", MEMBERS),

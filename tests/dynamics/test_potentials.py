@@ -9,6 +9,7 @@ import pytest
 import sympy
 from scipy.optimize import brentq
 
+import symfpu
 from symfpu import (
     Chain,
     EscapedOrbit,
@@ -18,7 +19,6 @@ from symfpu import (
     integrate,
     random_state,
     refine,
-    torus_at_amplitudes,
 )
 from symfpu.chain import bonds
 from symfpu.chain.potentials.potential import Potential
@@ -95,7 +95,7 @@ def test_kicks_in_modes_refuse_closed_laws_and_rings_by_name(chain, words):
 @pytest.mark.parametrize("law", ["toda:1/2", "poly:1/3,0,1/5,-1/4", *(pytest.param(law, marks=pytest.mark.long) for law in OTHERS)])
 def test_an_orbit_stays_on_its_refined_torus(law, N):
     chain, size = Chain(N, potential=law), 1.5 * LAWS.get(law, 0.1)
-    torus = refine(torus_at_amplitudes(chain, {1: size, 2: size / 2}, order=6))
+    torus = refine(symfpu.torus(chain, (1, 2), amplitudes={1: size, 2: size / 2}, method="series", order=6))
     orbit = integrate(chain, *torus.state(), 300.0, step=0.1)
     there = torus.Q(orbit.times)
     assert np.max(np.abs(orbit.Q - there)) < STEP_ERROR * np.max(np.abs(there))

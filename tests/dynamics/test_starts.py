@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from symfpu import Chain, InputError, fpu_trajectory, packet_state, particle_state, random_state, torus_at_amplitudes, unfold
+import symfpu
+from symfpu import Chain, InputError, fpu_trajectory, packet_state, particle_state, random_state, unfold
 from tests.tolerances import ROUNDING, TEN_ROUNDINGS
 
 CHAINS = [
@@ -86,7 +87,7 @@ def test_particles_come_back(N, ends, seed):
 
 @pytest.mark.long
 def test_a_state_of_a_torus_is_the_particles_state():
-    torus = torus_at_amplitudes(Chain(4, alpha="0.3"), {1: "0.1"}, 2)
+    torus = symfpu.torus(Chain(4, alpha="0.3"), (1,), amplitudes={1: "0.1"}, method="series", order=2)
     ring = unfold(torus.in_doubles())
     state = particle_state(ring.chain, ring.x(0.0), ring.p(0.0))
     assert np.allclose(state, ring.state(), rtol=0, atol=ROUNDING)

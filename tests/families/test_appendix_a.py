@@ -6,11 +6,10 @@ import pickle
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, NoRealAmplitude, SymfpuError, frequency_shift, lindstedt, solve_amplitudes
+from symfpu import Chain, InputError, NoRealAmplitude, Orders, SymfpuError, frequency_shift, lindstedt, solve_amplitudes
 from symfpu.families.appendix_a import NoFurtherMember, _Family, appendix_a, appendix_a_members, linear_specific_energy
 from symfpu.paper import appendix_a_claims
 from symfpu.tori.amplitudes import shifts
-from symfpu.tori.frequencies import checked_plan
 from tests.refusals import each, refused
 from tests.tolerances import INCREMENT, INCREMENT_OF_H, LINEAR_ENERGY, RELATIVE_SHIFT, SLOPE, SMALL_SHIFT, TEN_ROUNDINGS, TRIAL_AMPLITUDE
 
@@ -28,7 +27,7 @@ CASES = [
 
 
 def family_of(chain, seeds, order):
-    return _Family(chain, seeds, checked_plan(chain, order, None, None, None, None))
+    return _Family(chain, seeds, Orders(order))
 
 
 @pytest.fixture(scope="module")

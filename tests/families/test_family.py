@@ -9,7 +9,7 @@ import pytest
 from numpy.polynomial import Chebyshev
 
 import symfpu
-from symfpu import Chain, InputError, NotInFamily, breather_at_energy, family, member_at_energy, member_at_frequency
+from symfpu import Chain, InputError, NotInFamily, family, member_at_energy, member_at_frequency
 from symfpu.families import continuation
 from symfpu.families.beginnings import first_torus
 from symfpu.families.members import member
@@ -114,7 +114,7 @@ def test_both_ends_have_the_energies_asked_for(case, harmonic):
     for energy in (first, goal):
         assert float(member_at_energy(found, energy, harmonic=harmonic).energy()) > 0
     if len(seeds) == 1 and not harmonic:
-        ends = [breather_at_energy(chain, seeds[0], energy) for energy in (first, goal)]
+        ends = [symfpu.torus(chain, (seeds[0],), energy=energy) for energy in (first, goal)]
         assert [omega(found.members[k]) for k in (0, -1)] == pytest.approx([float(o.frequency) for o in ends], rel=SAME_ORBIT)
 
 
@@ -135,7 +135,7 @@ def test_a_way_down_is_not_followed():
 def test_members_are_the_breathers_of_harmonic_balance():
     for m in breathers().members:
         (amplitude,) = m.amplitudes.values()
-        orbit = symfpu.breather_at_amplitude(ROUND, 3, amplitude)
+        orbit = symfpu.torus(ROUND, (3,), amplitudes={3: amplitude})
         assert omega(m) == pytest.approx(float(orbit.frequency), rel=SAME_ORBIT)
         assert m.energy == pytest.approx(orbit.energy(), rel=SAME_ORBIT)
         assert m.harmonic_energy == pytest.approx(orbit.harmonic_energies().sum(), rel=SAME_ORBIT)
@@ -143,7 +143,9 @@ def test_members_are_the_breathers_of_harmonic_balance():
             expected = orbit.cosines[n] if n < len(orbit.cosines) else 0 * row
             assert row == pytest.approx(expected, abs=SAME_ORBIT * amplitude)
     last = breathers().members[-1]
-    assert symfpu.periodic_orbit(ROUND, 3, last.torus.frequencies[0]).amplitude == pytest.approx(last.amplitudes[3], rel=1e3 * SAME_ORBIT)
+    assert symfpu.torus(ROUND, (3,), frequencies=(last.torus.frequencies[0],)).amplitude == pytest.approx(
+        last.amplitudes[3], rel=1e3 * SAME_ORBIT
+    )
 
 
 def averages(torus):
@@ -174,7 +176,9 @@ def test_a_fold_of_a_frequency_is_passed_and_located():
     near = folded().members[fold.after].torus
 
     def shift(ln_energy):
-        return [float(shifts_of(symfpu.refine(near, energy=float(np.exp(x)), energy_ratio={1: 1, 2: 1}))[1]) for x in ln_energy]
+        return [
+            float(shifts_of(symfpu.refine(near, energy=symfpu.Energy(float(np.exp(x)), energy_ratio={1: 1, 2: 1})))[1]) for x in ln_energy
+        ]
 
     about = np.log(0.003)
     shifts = Chebyshev.interpolate(shift, 10, domain=(about - 0.25, about + 0.25))
@@ -196,7 +200,7 @@ def test_a_resonance_is_named_and_located():
     assert (event.mode, event.harmonic, event.interpolated) == (17, (15,), False)
     first, second = resonant().members[event.after : event.after + 2]
     assert first.energy < event.energy < second.energy
-    at = breather_at_energy(LONG, 1, repr(event.energy))
+    at = symfpu.torus(LONG, (1,), energy=repr(event.energy))
     assert 15 * float(at.frequency) == pytest.approx(LONG.frequencies()[16], abs=RESONANCE_ENERGY * 0.005)
     assert event.value == pytest.approx(at.cosines[15, 16], rel=tolerances.RESONANT_AMPLITUDE)
     assert "resonance of mode 17 with harmonic (15) at H = 0.0392110" in repr(event)
@@ -266,7 +270,7 @@ def test_a_family_that_comes_back_to_rest_ends_there():
     first, *_, other, last = found.members
 
     def of_the_limit(m):
-        return float(symfpu.breather_at_amplitude(LOOP, 1, m.amplitudes[1]).frequency)
+        return float(symfpu.torus(LOOP, (1,), amplitudes={1: m.amplitudes[1]}).frequency)
 
     assert first.energy > other.energy > last.energy
     assert first.amplitudes[1] > other.amplitudes[1] > last.amplitudes[1]
@@ -285,7 +289,7 @@ def test_a_beginning_beyond_the_series_is_led_up_to():
     assert found.members[0].energy == pytest.approx(0.5, rel=FIXED_ENERGY)
     for m in found.members:
         assert m.verdict == "torus"
-        assert omega(m) == pytest.approx(float(breather_at_energy(LOOP, 1, m.energy).frequency), rel=tolerances.LOOSE_MEMBER)
+        assert omega(m) == pytest.approx(float(symfpu.torus(LOOP, (1,), energy=m.energy).frequency), rel=tolerances.LOOSE_MEMBER)
 
 
 @pytest.mark.long
@@ -300,7 +304,7 @@ def test_a_change_of_stability_is_located():
     (event,) = [e for e in destabilised().events if e.kind == "stability"]
     assert event.what == "instability (real > 0) begins"
     assert event.energy == pytest.approx(1.3353, rel=STABILITY)
-    below, above = (symfpu.floquet(breather_at_energy(HARD, 15, event.energy * (1 + d))) for d in (-STABILITY, STABILITY))
+    below, above = (symfpu.floquet(symfpu.torus(HARD, (15,), energy=event.energy * (1 + d))) for d in (-STABILITY, STABILITY))
     assert below.stable
     assert above.instabilities == {"real > 0": 1}
     stable = [m.multipliers.stable for m in destabilised().members]
@@ -352,7 +356,7 @@ def test_a_family_that_cannot_go_on_says_so():
 def test_the_family_goes_on_where_its_series_ends():
     """docs/convergence.md: orbit and fold of the fixed-frequency scheme coincide at A = 1.0812, omega = 0.098352. Before it the roots of
     the truncated series approach the member of their frequency; behind it they do not."""
-    at = symfpu.breather_at_amplitude(LONG, 1, "1.0812")
+    at = symfpu.torus(LONG, (1,), amplitudes={1: "1.0812"})
     assert float(at.frequency) == pytest.approx(0.098352, abs=tolerances.SIX_PLACES)
     assert at.energy() == pytest.approx(0.00926, abs=tolerances.FIVE_PLACES)
     before = [m for m in resonant().members if m.amplitudes[1] < 0.95]
@@ -383,7 +387,7 @@ def test_at_energy_is_on_the_family():
     harmonic = member_at_energy(folded(), "0.02", harmonic=True)
     assert float(harmonic.harmonic_energies().sum()) == pytest.approx(0.02, rel=FIXED_ENERGY)
     breather = member_at_energy(breathers(), "0.1", harmonic=False)
-    assert breather.amplitudes[3] == pytest.approx(breather_at_energy(ROUND, 3, "0.1").amplitude, rel=SAME_ORBIT)
+    assert breather.amplitudes[3] == pytest.approx(symfpu.torus(ROUND, (3,), energy="0.1").amplitude, rel=SAME_ORBIT)
 
 
 @pytest.mark.parametrize("energy", ["0.0001", "7"])

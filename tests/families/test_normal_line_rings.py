@@ -3,7 +3,7 @@
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_amplitude, floquet, lindstedt, normal_family, normal_modes, refine, unfold
+from symfpu import Chain, InputError, floquet, lindstedt, normal_family, normal_modes, refine, unfold
 from symfpu.errors import RunInterrupted
 from symfpu.families.normal_events import STABILITY
 from symfpu.normal.resonances import SUM
@@ -13,7 +13,7 @@ RING = Chain(8, alpha="0.3", beta="0.5", ends="periodic")
 
 
 def wave(A):
-    return symfpu.breather_at_amplitude(RING, 2, A)
+    return symfpu.torus(RING, (2,), amplitudes={2: A})
 
 
 def test_a_travelling_wave_loses_its_stability_where_a_multiplier_leaves_the_circle():
@@ -29,14 +29,14 @@ def test_a_travelling_wave_loses_its_stability_where_a_multiplier_leaves_the_cir
 
 
 def test_standing_waves_have_the_onset_of_fixed_ends():
-    fixed = breather_at_amplitude(Chain(4, alpha="0.5"), 2, "0.5")
+    fixed = symfpu.torus(Chain(4, alpha="0.5"), (2,), amplitudes={2: "0.5"})
     [expected] = normal_family(fixed, {2: "1"}, members=2, modes=[1]).events
     sine, cosine = sorted(normal_family(unfold(fixed), {2: "1"}, members=2, modes=[-1, 1]).events, key=lambda e: -e.resonance.modes[0])
     assert sine.resonance == expected.resonance
     assert sine.amplitudes[2] == pytest.approx(expected.amplitudes[2], abs=EVENT_BY_DIGITS)
     for side in (-1, 1):
         A = cosine.amplitudes[2] + side * BESIDE_AN_ONSET
-        ring = normal_modes(unfold(breather_at_amplitude(Chain(4, alpha="0.5"), 2, repr(A))), modes=[-1])
+        ring = normal_modes(unfold(symfpu.torus(Chain(4, alpha="0.5"), (2,), amplitudes={2: repr(A)})), modes=[-1])
         assert bool(ring.growth) == (side > 0)
 
 
@@ -65,7 +65,7 @@ def test_an_interrupted_line_of_a_ring_goes_on(tmp_path, stands):
         if label.startswith("torus 3"):
             raise KeyboardInterrupt
 
-    first = unfold(breather_at_amplitude(Chain(4, alpha="0.5"), 2, "0.5")) if stands else wave("1")
+    first = unfold(symfpu.torus(Chain(4, alpha="0.5"), (2,), amplitudes={2: "0.5"})) if stands else wave("1")
     line = {"amplitudes": {2: "0.8" if stands else "1.3"}, "members": 3, "modes": [1]}
     with pytest.raises(RunInterrupted):
         normal_family(first, **line, folder=tmp_path, progress=stop)
@@ -73,6 +73,6 @@ def test_an_interrupted_line_of_a_ring_goes_on(tmp_path, stands):
     expected = normal_family(first, **line)
     assert found.events == expected.events
     assert [m.frequencies for m in found.members] == [m.frequencies for m in expected.members]
-    fixed = breather_at_amplitude(Chain(8, potential=first.chain.potential), 2, repr(float(first.amplitudes[2])))
+    fixed = symfpu.torus(Chain(8, potential=first.chain.potential), (2,), amplitudes={2: repr(float(first.amplitudes[2]))})
     with pytest.raises(InputError, match="its ends differs"):
         normal_family(fixed, **line, folder=tmp_path)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, NormalEvent, breather_at_amplitude, family, floquet, normal_family, refine
+from symfpu import Chain, InputError, NormalEvent, family, floquet, normal_family, refine
 from symfpu.errors import RunInterrupted
 from symfpu.families.normal_zeros import Bracket, located
 from tests.tolerances import BESIDE_AN_ONSET, FIXED_ENERGY, GROWTH_BY_FLOQUET, NORMAL_CONVERGED, ONSET
@@ -35,7 +35,7 @@ def test_members_carry_the_normal_frequencies_of_their_tori():
 def test_the_event_of_a_family_is_that_of_the_line():
     """Breathers of one seed are one curve, by energies here and by amplitudes there."""
     [event] = breathers().normal_events
-    line = normal_family(breather_at_amplitude(UNSTABLE, 2, "0.5"), {2: "1"}, members=2, modes=[1])
+    line = normal_family(symfpu.torus(UNSTABLE, (2,), amplitudes={2: "0.5"}), {2: "1"}, members=2, modes=[1])
     [expected] = line.events
     assert event.resonance.condition == expected.resonance.condition == "2 sigma_1 = (1).omega"
     assert event.begins
@@ -119,7 +119,7 @@ def test_a_narrow_tongue_has_both_ends():
         for side in (-1, 1):
             A = event.amplitudes[1] + side * 10 * BESIDE_AN_ONSET
             inside = begins.amplitudes[1] < A < ends.amplitudes[1]
-            assert floquet(breather_at_amplitude(chain, 1, repr(A))).stable != inside
+            assert floquet(symfpu.torus(chain, (1,), amplitudes={1: repr(A)})).stable != inside
 
 
 def test_a_zero_of_what_is_too_small_to_interpolate_is_halved():
@@ -169,7 +169,7 @@ def test_an_interrupted_line_goes_on(tmp_path):
                 normal_family(breather, {2: "1"}, **LINE, folder=tmp_path)
             raise KeyboardInterrupt
 
-    breather = breather_at_amplitude(UNSTABLE, 2, "0.5")
+    breather = symfpu.torus(UNSTABLE, (2,), amplitudes={2: "0.5"})
     with pytest.raises(RunInterrupted, match="after 2 tori"):
         normal_family(breather, {2: "1"}, **LINE, folder=tmp_path, progress=stop)
     found = normal_family(breather, {2: "1"}, **LINE, folder=tmp_path)

@@ -5,7 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_energy, family, from_expression, member_at_energy
+import symfpu
+from symfpu import Chain, family, from_expression, member_at_energy
 from tests.tolerances import FIXED_ENERGY, FOUR_PLACES, SAME_ORBIT, SIX_PLACES
 
 COSH = "cosh(r) - 1"
@@ -70,7 +71,7 @@ def agree(case):
         assert one.torus.cosines.shape == other.torus.cosines.shape
         assert one.torus.cosines == pytest.approx(other.torus.cosines, abs=SAME_ORBIT)
     end = near.members[-1].torus
-    same = breather_at_energy(chain_of(law, N), seed, repr(energy / 2))
+    same = symfpu.torus(chain_of(law, N), (seed,), energy=repr(energy / 2))
     assert end.amplitudes[seed] == pytest.approx(same.amplitude, rel=SAME_ORBIT)
 
 
@@ -144,7 +145,7 @@ def test_tori_of_two_seeds_follow_the_gap_that_breathers_follow():
     for goal in ("0.2", "0.25", "0.3", "0.35"):
         found = family(NEAR_FIVE, (1, 3), goal, **SMALL_THIRD)
         assert found.ending == "reached the energy asked for"
-        orbit = breather_at_energy(NEAR_FIVE, 1, goal)
+        orbit = symfpu.torus(NEAR_FIVE, (1,), energy=goal)
         assert found.members[-1].amplitudes[1] == pytest.approx(orbit.amplitude, rel=FOUR_PLACES)
         amplitudes[goal] = found.members[-1].amplitudes[1]
     for energy in ("0.2", "0.25", "0.3"):

@@ -5,8 +5,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, floquet, normal_family, normal_modes, refine, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, floquet, normal_family, normal_modes, refine
 from symfpu.normal.search import LOST, followed_modes
+from tests.breather import breather_of
 from tests.tolerances import NORMAL_CONVERGED, NORMAL_MULTIPLIER
 
 CASES = {  # chain, first and last amplitudes, members, modes that once went astray
@@ -28,9 +30,9 @@ def start(name):
     """From smaller amplitudes, where a series leads to the torus."""
     chain, wanted, *_ = CASES[name]
     if len(wanted) == 1:
-        return breather_at_amplitude(chain, *wanted, *wanted.values())
+        return breather_of(chain, *wanted, *wanted.values())
     near = {q: min(float(a), 0.2) for q, a in wanted.items()}
-    found = refine(torus_at_amplitudes(chain, {q: repr(a) for q, a in near.items()}, order=6), amplitudes=near)
+    found = symfpu.torus(chain, tuple(near), amplitudes=near)
     for part in (0.25, 0.5, 0.75, 1.0):
         found = refine(found, amplitudes={q: a + part * (float(wanted[q]) - a) for q, a in near.items()})
     return found
@@ -70,7 +72,7 @@ def test_their_multipliers_are_those_of_positive_signature(name):
 
 def test_the_two_of_a_quartet_are_two_solutions():
     """sigma_1 and nu.omega - conj(sigma_1) of mode 7; both were sigma_1 and 2 omega more."""
-    found = normal_modes(breather_at_amplitude(Chain(8, alpha="0.5"), 2, "1.2"), modes=[1, 7])
+    found = normal_modes(symfpu.torus(Chain(8, alpha="0.5"), (2,), amplitudes={2: "1.2"}), modes=[1, 7])
     one, seven = (complex(w) / float(found.torus.frequency) for w in found.frequencies.values())
     assert one.imag == pytest.approx(seven.imag, abs=NORMAL_CONVERGED)
     assert one.real + seven.real == pytest.approx(3, abs=NORMAL_CONVERGED)

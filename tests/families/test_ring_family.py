@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, actions, breather_at_amplitude, family, floquet, load, member_at_energy, save, toda, toda_torus
+from symfpu import Chain, InputError, actions, family, floquet, load, member_at_energy, save, toda, toda_torus
 from symfpu.families.beginnings import returned
 from symfpu.families.normal_events import STABILITY
 from symfpu.refinement.tori import shifts_of
@@ -43,7 +43,7 @@ def test_every_member_is_a_torus_and_the_ends_have_their_energies(found):
 
 def test_members_of_one_seed_are_the_waves_followed_from_rest():
     for m in wave().members:
-        expected = breather_at_amplitude(RING, 2, m.amplitudes[2])
+        expected = symfpu.torus(RING, (2,), amplitudes={2: m.amplitudes[2]})
         assert float(m.torus.frequency) == pytest.approx(float(expected.frequency), rel=SAME_FREQUENCY)
         assert m.energy == pytest.approx(expected.energy(), rel=FIXED_ENERGY)
 
@@ -102,7 +102,7 @@ def test_resonances_are_where_a_divisor_is_zero():
 def test_an_onset_is_that_of_the_line():
     """Where a multiplier leaves the circle: test_normal_line_rings.py."""
     [event] = wave().normal_events
-    [expected] = symfpu.normal_family(breather_at_amplitude(RING, 2, "1"), {2: "1.3"}, members=2).events
+    [expected] = symfpu.normal_family(symfpu.torus(RING, (2,), amplitudes={2: "1"}), {2: "1.3"}, members=2).events
     assert (event.kind, event.resonance.modes) == (STABILITY, expected.resonance.modes)
     assert event.amplitudes[2] == pytest.approx(expected.amplitudes[2], rel=EVENT_BY_DIGITS)
 

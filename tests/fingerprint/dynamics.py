@@ -86,7 +86,7 @@ def localization():
     yield "fit", sampled(symfpu.fit_profile(beta, spectrum, 4, floor=0.0).record())
     yield "distance", symfpu.profile_distance([1, 1e-2, 1e-4], [1, 1e-3, 1e-4], 1e-12).record()
     yield "floor", solver(symfpu.rounding_floor(CHAIN, orbit().averages[-1], 200.0, step=0.25))
-    series = symfpu.torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.1"}, 5)
+    series = symfpu.torus(Chain(8, alpha="0.3"), (1,), amplitudes={1: "0.1"}, method="series", order=5)
     yield "floor of a torus", noise(symfpu.spectrum_floor(series))
     yield "errors of coefficients", noise(symfpu.coefficient_errors(series).max())
     yield "slopes", sampled(slope_by_energy(beta, 4, [1e-6, 2e-6, 4e-6], [spectrum, spectrum**0.98, spectrum**0.96], floor=0.0).record())

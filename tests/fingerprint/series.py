@@ -132,7 +132,7 @@ def verdicts():
         torus = solve_amplitudes(series)
         yield name, assess(series, torus).record()
         yield f"{name}, history", symfpu.amplitude_history(series).record()
-    near = symfpu.torus_at_amplitudes(Chain(8, beta=1), {1: "0.3", 3: "0.2"}, 6)
+    near = symfpu.torus(Chain(8, beta=1), (1, 3), amplitudes={1: "0.3", 3: "0.2"}, method="series", order=6)
     yield "diverging", assess(near.origin.series, near).record()
 
 

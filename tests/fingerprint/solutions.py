@@ -5,7 +5,8 @@ from functools import cache
 import numpy as np
 
 import symfpu
-from symfpu import Chain, lindstedt, refine, solve_amplitudes, torus_at_amplitudes, torus_at_energy
+from symfpu import Chain, lindstedt, refine, solve_amplitudes
+from tests.breather import breather_of
 from tests.fingerprint.cases import case
 from tests.fingerprint.entries import solver
 
@@ -23,12 +24,12 @@ BREATHERS = {
 
 @cache
 def breather(name):
-    return symfpu.breather_at_amplitude(*BREATHERS[name])
+    return breather_of(*BREATHERS[name])
 
 
 @cache
 def pair():
-    return torus_at_amplitudes(ALPHA, {1: "0.2", 2: "0.1"}, 6)
+    return symfpu.torus(ALPHA, (1, 2), amplitudes={1: "0.2", 2: "0.1"}, method="series", order=6)
 
 
 def motion(solution):
@@ -47,11 +48,19 @@ def told(name, solution):
 @case
 def by_wish():
     yield from told("at amplitudes", pair())
-    yield from told("at amplitudes, digits", torus_at_amplitudes(ALPHA, {1: "0.2"}, 6, digits=25))
-    yield from told("at energy", torus_at_energy(Chain(16, alpha="0.33"), (1, 2), "0.001", order=8))
-    yield from told("at energy, shared", torus_at_energy(Chain(9, beta=1), (1, 3), "0.01", order=4, energy_ratio={1: 2, 3: 1}))
-    yield from told("at harmonic energy", torus_at_energy(Chain(7, potential="morse:1/3"), (2,), "0.01", order=5, harmonic=True))
-    yield from told("three seeds", torus_at_amplitudes(Chain(9, alpha="0.3"), {1: "0.1", 2: "0.1", 3: "0.05"}, 3))
+    yield from told("at amplitudes, digits", symfpu.torus(ALPHA, (1,), amplitudes={1: "0.2"}, method="series", order=6, digits=25))
+    yield from told("at energy", symfpu.torus(Chain(16, alpha="0.33"), (1, 2), energy="0.001", method="series", order=8))
+    yield from told(
+        "at energy, shared",
+        symfpu.torus(Chain(9, beta=1), (1, 3), energy=symfpu.Energy("0.01", energy_ratio={1: 2, 3: 1}), method="series", order=4),
+    )
+    yield from told(
+        "at harmonic energy",
+        symfpu.torus(Chain(7, potential="morse:1/3"), (2,), energy=symfpu.Energy("0.01", harmonic=True), method="series", order=5),
+    )
+    yield from told(
+        "three seeds", symfpu.torus(Chain(9, alpha="0.3"), (1, 2, 3), amplitudes={1: "0.1", 2: "0.1", 3: "0.05"}, method="series", order=3)
+    )
 
 
 @case
@@ -59,9 +68,11 @@ def by_newton():
     yield from told("at frequencies", refine(pair()))
     yield from told("at amplitudes", symfpu.refine(pair(), amplitudes={1: "0.25", 2: "0.1"}))
     yield from told("at energy", refine(pair(), energy="0.02"))
-    yield from told("at energy, shared", refine(pair(), energy="0.02", harmonic=True, energy_ratio={1: 1, 2: 1}))
+    yield from told("at energy, shared", refine(pair(), energy=symfpu.Energy("0.02", harmonic=True, energy_ratio={1: 1, 2: 1})))
     yield from told("at a start", symfpu.refine(pair(), start={1: "0.21", 2: "0.09"}))
-    yield from told("digits", refine(torus_at_amplitudes(Chain(4, alpha="0.3"), {1: "0.2", 2: "0.1"}, order=4), digits=30))
+    yield from told(
+        "digits", refine(symfpu.torus(Chain(4, alpha="0.3"), (1, 2), amplitudes={1: "0.2", 2: "0.1"}, method="series", order=4), digits=30)
+    )
     figure = symfpu.solve_amplitudes(symfpu.lindstedt(Chain(16, alpha="0.33"), (1, 2), ("0.19626", "0.39046"), 8))
     yield from told("Fig. 1", refine(figure))
 
@@ -70,9 +81,9 @@ def by_newton():
 def breathers():
     for name in BREATHERS:
         yield from told(name, breather(name))
-    yield from told("at frequency", symfpu.periodic_orbit(ALPHA, 1, "0.3905"))
-    yield from told("at energy", symfpu.breather_at_energy(Chain(6, beta=1), 5, "0.5"))
-    yield from told("at harmonic energy", symfpu.breather_at_energy(ALPHA, 2, "0.01", harmonic=True))
+    yield from told("at frequency", symfpu.torus(ALPHA, (1,), frequencies=("0.3905",)))
+    yield from told("at energy", symfpu.torus(Chain(6, beta=1), (5,), energy="0.5"))
+    yield from told("at harmonic energy", symfpu.torus(ALPHA, (2,), energy=symfpu.Energy("0.01", harmonic=True)))
     yield from told("digits", symfpu.refine(breather("both"), digits=30))
     yield from told("digits at amplitude", symfpu.refine(breather("alpha"), digits=25, amplitudes={1: "0.31"}))
     yield "law", symfpu.breather_law(Chain(32, alpha="0.33"), 1e-4)
@@ -88,8 +99,8 @@ def rings():
     yield from told("wave at amplitude", symfpu.refine(wave, amplitudes={1: "0.15"}))
     yield from told("two waves", solve_amplitudes(lindstedt(Chain(9, beta=1, ends="periodic"), (1, 2), ("0.6850", "1.2870"), 4)))
     long = Chain(64, beta=1, ends="periodic")
-    yield from told("breather of a ring", symfpu.breather_at_amplitude(long, 5, "0.8"))
-    yield from told("breather of a ring at energy", symfpu.breather_at_energy(Chain(9, alpha="0.3", ends="periodic"), 2, "0.1"))
+    yield from told("breather of a ring", symfpu.torus(long, (5,), amplitudes={5: "0.8"}))
+    yield from told("breather of a ring at energy", symfpu.torus(Chain(9, alpha="0.3", ends="periodic"), (2,), energy="0.1"))
     standing = symfpu.unfold(breather("alpha"))
     yield from told("standing", standing)
     yield "standing, mode coordinates", np.abs(standing.Q(0.0))

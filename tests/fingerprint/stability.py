@@ -3,7 +3,8 @@
 from functools import cache
 
 import symfpu
-from symfpu import Chain, actions, birkhoff_form, family, floquet, normal_frequency_series, normal_modes, refine, torus_at_amplitudes, twist
+from symfpu import Chain, actions, birkhoff_form, family, floquet, normal_frequency_series, normal_modes, refine, twist
+from tests.breather import breather_of
 from tests.fingerprint.cases import case
 from tests.fingerprint.entries import sampled, solver
 
@@ -19,13 +20,15 @@ ORBITS = {
 
 @cache
 def orbit(name):
-    return symfpu.breather_at_amplitude(*ORBITS[name])
+    return breather_of(*ORBITS[name])
 
 
 @cache
 def torus():
     amplitudes = {1: "0.2", 2: "0.1"}
-    return symfpu.refine(torus_at_amplitudes(Chain(4, alpha="0.3"), amplitudes, order=4), amplitudes=amplitudes)
+    return symfpu.refine(
+        symfpu.torus(Chain(4, alpha="0.3"), tuple(amplitudes), amplitudes=amplitudes, method="series", order=4), amplitudes=amplitudes
+    )
 
 
 @cache
@@ -65,7 +68,7 @@ def normal_series():
 
 @case
 def a_normal_family():
-    found = symfpu.normal_family(symfpu.breather_at_amplitude(Chain(6, beta=1), 5, "0.5"), {5: "1.5"}, members=3, resonance_length=2)
+    found = symfpu.normal_family(symfpu.torus(Chain(6, beta=1), (5,), amplitudes={5: "0.5"}), {5: "1.5"}, members=3, resonance_length=2)
     yield "line", found.record()
 
 
@@ -123,6 +126,6 @@ def families():
 @case
 def of_a_ring():
     chain = Chain(9, beta=1, ends="periodic")
-    found = symfpu.breather_at_amplitude(chain, 2, "0.4")
+    found = symfpu.torus(chain, (2,), amplitudes={2: "0.4"})
     yield "multipliers", floquet(found).record()
     yield "normal frequencies", normal_modes(found, resonance_length=4).record()

@@ -26,12 +26,12 @@ def checksum(text):
 
 @cache
 def orbit():
-    return symfpu.breather_at_amplitude(ALPHA, 1, "0.3")
+    return symfpu.torus(ALPHA, (1,), amplitudes={1: "0.3"})
 
 
 @cache
 def torus():
-    found = symfpu.torus_at_amplitudes(Chain(4, alpha="0.3"), {1: "0.2", 2: "0.1"}, order=4)
+    found = symfpu.torus(Chain(4, alpha="0.3"), (1, 2), amplitudes={1: "0.2", 2: "0.1"}, method="series", order=4)
     return symfpu.refine(found, digits=30)
 
 
@@ -79,9 +79,9 @@ def existence():
     yield "breather, stability", prove_stability(proof).record()
     yield "digits", prove_existence(symfpu.refine(orbit(), digits=30)).record()
     yield "interval", prove_existence(orbit(), amplitude="0.3", half_width="1e-6").record()
-    wave = symfpu.breather_at_amplitude(Chain(16, beta=1, ends="periodic"), 2, "0.8")
+    wave = symfpu.torus(Chain(16, beta=1, ends="periodic"), (2,), amplitudes={2: "0.8"})
     yield "wave", prove_existence(wave).record()
-    high = symfpu.breather_at_amplitude(Chain(6, beta=1), 5, "1.5")
+    high = symfpu.torus(Chain(6, beta=1), (5,), amplitudes={5: "1.5"})
     yield "unstable", prove_stability(prove_existence(high)).record()
 
 

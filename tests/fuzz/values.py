@@ -62,7 +62,7 @@ def refined():
 
 @cache
 def breather():
-    return symfpu.breather_at_amplitude(alpha(), 1, "0.1")
+    return symfpu.torus(alpha(), (1,), amplitudes={1: "0.1"})
 
 
 @cache
@@ -78,7 +78,7 @@ def waves():
 
 @cache
 def wave():
-    return symfpu.breather_at_amplitude(Chain(8, beta=1, ends="periodic"), 1, "0.1")
+    return symfpu.torus(Chain(8, beta=1, ends="periodic"), (1,), amplitudes={1: "0.1"})
 
 
 @cache
@@ -153,6 +153,9 @@ by_name = {
     "frequency": ("0.3903", None),
     "frequencies": (None, ("0.3903",), ("0.3903", "0.7655")),
     "phases": (None, {1: 0}, {1: "0.3", 2: 1}),
+    "method": ("newton", "series", "arclength", "appendix-a"),
+    "value": ("0.01", 1),
+    "level": (1e-6, 1e-3),
     "guess": (None, torus, breather, {1: 0.1, 2: 0.1}),
     "near": (None, torus),
     "T": (10.0, 100.0),
@@ -193,7 +196,6 @@ by_name = {
     "largest_set": (1, 2),
     "seeds_number": (1,),
     "members": (3, 5),
-    "method": ("arclength", "appendix-a"),
     "resonance_length": (2, 4),
     "tolerance": (1e-13, 1e-10),
     "most_harmonics": (200, 4000),

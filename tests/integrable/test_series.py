@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, alignment_indices, floquet, lindstedt, periodic_orbit, refine, solve_amplitudes, toda, toda_gaps, toda_torus
+from symfpu import Chain, alignment_indices, floquet, lindstedt, refine, solve_amplitudes, toda, toda_gaps, toda_torus
 from tests.tolerances import EPS, FLOQUET_PHASE, ROUNDING, TODA_RATE, TWENTY_DIGITS
 
 # seeds and actions at unit scale; the last column has the scales of actions at which errors are taken
@@ -99,7 +99,7 @@ def test_the_lowest_shift_is_of_each_seed_alone(N, seeds):
 def test_breathers_are_stable_with_the_normal_frequencies_of_the_curve(N, seed, omega):
     """(e) Multipliers on the circle, at the angles sigma T of the closed gaps."""
     chain = Chain(N, potential=toda("1/2"))
-    multipliers = np.asarray(floquet(periodic_orbit(chain, seed, omega)).multipliers)
+    multipliers = np.asarray(floquet(symfpu.torus(chain, (seed,), frequencies=(omega,))).multipliers)
     assert np.abs(np.abs(multipliers) - 1).max() < ROUNDING
     curve = toda_torus(chain, (seed,), frequencies=(omega,), digits=20)
     period = 2 * math.pi / float(omega)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, breather_at_energy, fit_profile, lindstedt, refine, solve_amplitudes, spectrum_floor, torus_at_amplitudes
+from symfpu import Chain, fit_profile, lindstedt, refine, solve_amplitudes, spectrum_floor
 from tests.tolerances import KNOWN_ERROR, LONG_SERIES_RESIDUAL, RELATIVE_SHIFT, SMALL_CHANGE, TWO_DIGITS, UNSEEN_TAIL
 
 # A floor is an estimate of first order, made twice as large: four times the energy of the error, and more where errors do not add up.
@@ -36,7 +36,8 @@ SERIES = {
 
 @lru_cache
 def orbit(case):
-    return breather_at_energy(*BREATHERS[case])
+    chain, seed, energy = BREATHERS[case]
+    return symfpu.torus(chain, (seed,), energy=energy)
 
 
 @lru_cache
@@ -204,20 +205,22 @@ def test_fits_stop_at_the_floor():
 
 def harmonic(chain, seed):
     """A mode that moves alone, with one frequency at every amplitude."""
-    guess = torus_at_amplitudes(chain, {seed: "0.1"}, order=4)
+    guess = symfpu.torus(chain, (seed,), amplitudes={seed: "0.1"}, method="series", order=4)
     with pytest.raises(symfpu.NoTorus, match="give the amplitudes"):
         refine(guess)
     return symfpu.refine(guess, amplitudes={seed: "0.1"})
 
 
 FORBIDDEN = {
-    "breather": lambda: breather_at_energy(Chain(33, beta=1), 3, "0.0353"),
-    "refined breather": lambda: refine(breather_at_energy(Chain(33, beta=1), 3, "0.0353")),
-    "series": lambda: torus_at_amplitudes(Chain(12, alpha="0.3"), {4: "0.1"}, order=6),
-    "torus": lambda: refine(torus_at_amplitudes(Chain(9, alpha="0.3", beta=1), {3: "0.1", 6: "0.1"}, order=4)),
-    "digits": lambda: symfpu.refine(breather_at_energy(Chain(9, beta=1), 3, "0.1"), digits=30),
-    "torus of digits": lambda: refine(torus_at_amplitudes(Chain(9, beta=1), {3: "0.1", 6: "0.05"}, order=3), digits=30),
-    "the middle mode": lambda: symfpu.breather_at_amplitude(Chain(4, alpha="0.3"), 2, "0.1"),
+    "breather": lambda: symfpu.torus(Chain(33, beta=1), (3,), energy="0.0353"),
+    "refined breather": lambda: refine(symfpu.torus(Chain(33, beta=1), (3,), energy="0.0353")),
+    "series": lambda: symfpu.torus(Chain(12, alpha="0.3"), (4,), amplitudes={4: "0.1"}, method="series", order=6),
+    "torus": lambda: refine(symfpu.torus(Chain(9, alpha="0.3", beta=1), (3, 6), amplitudes={3: "0.1", 6: "0.1"}, method="series", order=4)),
+    "digits": lambda: symfpu.refine(symfpu.torus(Chain(9, beta=1), (3,), energy="0.1"), digits=30),
+    "torus of digits": lambda: refine(
+        symfpu.torus(Chain(9, beta=1), (3, 6), amplitudes={3: "0.1", 6: "0.05"}, method="series", order=3), digits=30
+    ),
+    "the middle mode": lambda: symfpu.torus(Chain(4, alpha="0.3"), (2,), amplitudes={2: "0.1"}),
     "the middle mode by its amplitude": lambda: harmonic(Chain(4, alpha="0.3"), 2),
     "two bonds": lambda: harmonic(Chain(2, alpha="0.3"), 1),
 }

@@ -7,7 +7,7 @@ import pytest
 import symengine as se
 
 import symfpu
-from symfpu import Chain, InputError, breather_law, middle_modes, packet_energies, packet_groups, packet_parameter, torus_at_energy
+from symfpu import Chain, InputError, breather_law, middle_modes, packet_energies, packet_groups, packet_parameter
 from symfpu.localization.packet_sums import check_keys, packet_products, product_count
 from tests.tolerances import EIGHT_DIGITS, LEADING_ORDER_SLACK, NEXT_IN_LENGTH, THOUSAND_ROUNDINGS
 
@@ -16,7 +16,7 @@ ALPHA, BETA, BOTH = Chain(16, alpha="0.33"), Chain(20, beta="0.3"), Chain(16, al
 
 def _distance(chain, s, order, epsilon):
     """Largest relative difference from the torus of the series, over all modes of D_1 .. D_order."""
-    torus = torus_at_energy(chain, range(1, s + 1), epsilon * chain.N, order=order)
+    torus = symfpu.torus(chain, range(1, s + 1), energy=epsilon * chain.N, method="series", order=order)
     spectrum = torus.average_spectrum()
     modes = [q for group in packet_groups(chain, s)[1 : order + 1] for q in group]
     modes = [q for q in modes if q + (order * chain.degree_step + 1) * s < 2 * chain.N]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, fpu_trajectory, integrate, profile_invariance, profile_law, slope_by_energy, torus_at_energy
+from symfpu import Chain, InputError, fpu_trajectory, integrate, profile_invariance, profile_law, slope_by_energy
 from tests.tolerances import LEAST_SQUARES, RANDOM_RATE, ROUNDING, SMALL_CHANGE, THOUSAND_ROUNDINGS
 
 ALPHA, BETA = Chain(N=32, alpha="0.33"), Chain(N=32, beta="0.3")
@@ -29,7 +29,7 @@ def test_rate_of_the_laws_themselves(chain):
 def test_middle_slopes_of_tori_follow_log_energy(chain, order):
     """At low energy E^(k) is the leading term, eps^(k+1) or eps^(2k+1): the slope of the middle modes moves by 1/M a decade."""
     energies = [1e-12, 1e-11, 1e-10]
-    tori = [torus_at_energy(chain, (1, 2), e * 16, harmonic=True, order=order) for e in energies]
+    tori = [symfpu.torus(chain, (1, 2), energy=symfpu.Energy(e * 16, harmonic=True), method="series", order=order) for e in energies]
     spectra = np.array([torus.average_spectrum() for torus in tori])
     trend = slope_by_energy(chain, 2, energies, spectra, modes="middle", floor=0.0)
     assert trend.rate == pytest.approx(8.0, rel=SMALL_CHANGE)  # the next order is smaller by lambda / M^2 < 1e-4

@@ -4,7 +4,8 @@ from functools import cache
 
 import numpy as np
 
-from symfpu import refine, torus_at_amplitudes
+import symfpu
+from symfpu import refine
 from tests.tolerances import NORMAL_MULTIPLIER
 
 
@@ -12,7 +13,7 @@ from tests.tolerances import NORMAL_MULTIPLIER
 def torus(chain, amplitudes, order=6):
     """Of pairs (seed, amplitude), by Newton's method in doubles."""
     wanted = dict(amplitudes)
-    return refine(torus_at_amplitudes(chain, wanted, order=order), amplitudes=wanted)
+    return refine(symfpu.torus(chain, tuple(wanted), amplitudes=wanted, method="series", order=order), amplitudes=wanted)
 
 
 def assert_multipliers(found, expected):

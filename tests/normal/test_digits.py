@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, NoNormalModes, breather_at_amplitude, normal_modes, refine, toda
+from symfpu import Chain, NoNormalModes, normal_modes, refine, toda
 from symfpu.normal import digits as normal_digits
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.iterative_refinement import Failure
@@ -85,7 +85,7 @@ def monodromy_by_taylor(orbit, alpha, steps):
 @pytest.mark.parametrize("amplitude", ["0.3", "1"], ids=["stable", "unstable"])
 def test_of_a_breather_they_are_the_multipliers_of_its_monodromy_to_all_digits(amplitude):
     chain = Chain(4, alpha="0.5")
-    orbit = refine(breather_at_amplitude(chain, 2, amplitude), digits=26, amplitudes={2: amplitude})
+    orbit = refine(symfpu.torus(chain, (2,), amplitudes={2: amplitude}), digits=26, amplitudes={2: amplitude})
     found = normal_modes(orbit)
     assert found.stable == (amplitude == "0.3")
     monodromy = monodromy_by_taylor(orbit, "0.5", 24)
@@ -139,7 +139,7 @@ def test_doubles_near_a_collision_say_what_digits_say_or_that_they_do_not_know()
     chain, words = Chain(4, alpha="0.5"), {}
     for part in ("-1e-11", "-1e-13", "1e-13", "1e-11"):
         amplitude = mpmath.nstr(mpmath.mpf("0.770623247525") + mpmath.mpf(part), 16)
-        breather = breather_at_amplitude(chain, 2, amplitude)
+        breather = symfpu.torus(chain, (2,), amplitudes={2: amplitude})
         words[part] = normal_modes(breather, modes=[1]).stable
         if part.endswith("11"):
             exact = normal_modes(refine(breather, digits=25, amplitudes={2: amplitude}), modes=[1])
@@ -149,7 +149,7 @@ def test_doubles_near_a_collision_say_what_digits_say_or_that_they_do_not_know()
 
 
 def test_an_undecided_verdict_says_so():
-    breather = breather_at_amplitude(Chain(4, alpha="0.5"), 2, "0.7706232475251")
+    breather = symfpu.torus(Chain(4, alpha="0.5"), (2,), amplitudes={2: "0.7706232475251"})
     found = normal_modes(breather, modes=[1])
     assert found.undecided == (1,)
     assert found.verdict.startswith("undecided: modes 1, nearer to a collision than")
@@ -184,7 +184,7 @@ def test_one_mode_without_digits_does_not_lose_the_others(monkeypatch):
             raise Failure("no more")
         return refined(modes, mode, tell)
 
-    orbit = refine(breather_at_amplitude(Chain(4, beta=1), 2, "0.1"), digits=20)
+    orbit = refine(symfpu.torus(Chain(4, beta=1), (2,), amplitudes={2: "0.1"}), digits=20)
     whole = normal_modes(orbit)
     assert whole.frequencies.keys() == {1, 3}
     monkeypatch.setattr(normal_digits.PreciseModes, "refined", stopped)

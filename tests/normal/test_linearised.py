@@ -5,7 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu import Chain, lindstedt, refine, solve_amplitudes, torus_at_amplitudes, unfold
+import symfpu
+from symfpu import Chain, lindstedt, refine, solve_amplitudes, unfold
 from symfpu.normal.linearised import Linearised
 from tests.tolerances import ROUNDING
 
@@ -20,7 +21,7 @@ EACH = pytest.mark.parametrize(
 def torus(kind):
     if kind == "travelling":
         return refine(solve_amplitudes(lindstedt(RING, (1, -2), ("0.875", "1.575"), 4)))
-    fixed = refine(torus_at_amplitudes(Chain(5, alpha="0.3"), {1: "0.3", 2: "0.2"}, order=4))
+    fixed = refine(symfpu.torus(Chain(5, alpha="0.3"), (1, 2), amplitudes={1: "0.3", 2: "0.2"}, method="series", order=4))
     return fixed if kind == "fixed" else unfold(fixed)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, Newton, ParametricResonance, breather_at_amplitude, normal_modes, refine
+from symfpu import Chain, Newton, ParametricResonance, normal_modes, refine
 from symfpu.action_angle.newton_twist import equation_of
 from symfpu.normal.meeting import Crossed, Lost, Meeting
 from symfpu.normal.resonances import PARAMETRIC, SUM
@@ -54,7 +54,7 @@ def test_the_gradient_is_that_of_differences(kind):
 
 @pytest.mark.parametrize("potential", ["toda:1/2", "poly:1/3,1/4"])
 def test_the_gradient_on_a_ring_is_that_of_differences(potential):
-    solution = breather_at_amplitude(Chain(8, potential=potential, ends="periodic"), 2, "0.4")
+    solution = symfpu.torus(Chain(8, potential=potential, ends="periodic"), (2,), amplitudes={2: "0.4"})
     assert isinstance(solution.origin, Newton)
     condition = Crossed(normal_modes(solution, modes=[1, 3]), ParametricResonance(SUM, (1, 3), (2,), 0.0))
     rows = dict(zip(map(tuple, solution.harmonics.tolist()), solution.cosines[:, 0], strict=True))
@@ -75,7 +75,7 @@ def test_a_place_without_the_directions_is_lost():
     """The eigenfunctions of another torus far away, at frequencies that are no solutions here."""
     equation, cosines = equation_of(torus("0.41"))
     condition = Crossed(
-        normal_modes(symfpu.breather_at_amplitude(CHAIN, 5, "0.9"), modes=[4, 6]), ParametricResonance(SUM, (4, 6), (2,), 0.0)
+        normal_modes(symfpu.torus(CHAIN, (5,), amplitudes={5: "0.9"}), modes=[4, 6]), ParametricResonance(SUM, (4, 6), (2,), 0.0)
     )
     with pytest.raises((Lost, ValueError)):
         condition.value(equation, cosines.astype(np.longdouble), shifts_of(torus("0.41")))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_amplitude, floquet, integrate, lindstedt, normal_modes, refine, toda, toda_torus
+from symfpu import Chain, InputError, floquet, integrate, lindstedt, normal_modes, refine, toda, toda_torus
 from symfpu.dynamics.tangent import tangent_map_along
 from symfpu.normal.resonances import DIFFERENCE, PARAMETRIC, SUM, resonances_of
 from symfpu.normal.torus import second_order
@@ -44,7 +44,7 @@ UNSTABLE = (
     ids=repr,
 )
 def test_of_a_breather_they_are_the_multipliers(chain, seed, amplitude):
-    breather = breather_at_amplitude(chain, seed, amplitude)
+    breather = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     assert_multipliers(normal_modes(breather), floquet(breather))
 
 
@@ -179,8 +179,8 @@ def test_a_mode_is_asked_for_by_its_number():
 
 
 def test_two_particles_have_one_and_one_has_none():
-    assert list(normal_modes(breather_at_amplitude(Chain(3, alpha=1), 1, "0.1")).frequencies) == [2]
-    alone = normal_modes(breather_at_amplitude(Chain(2, beta=1), 1, "0.5"))
+    assert list(normal_modes(symfpu.torus(Chain(3, alpha=1), (1,), amplitudes={1: "0.1"})).frequencies) == [2]
+    alone = normal_modes(symfpu.torus(Chain(2, beta=1), (1,), amplitudes={1: "0.5"}))
     assert alone.frequencies == {}
     assert alone.stable
     assert alone.residual == 0

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_amplitude, lindstedt, normal_modes, refine, save, solve_amplitudes, unfold
+from symfpu import Chain, InputError, lindstedt, normal_modes, refine, save, solve_amplitudes, unfold
 from symfpu.chain import bonds
 from symfpu.cli.main import main
 from tests.normal.cases import assert_multipliers
@@ -31,7 +31,7 @@ WAVES = [
 @pytest.mark.parametrize(("chain", "seed", "amplitude"), WAVES, ids=repr)
 def test_of_one_wave_they_are_the_multipliers(chain, seed, amplitude):
     """The last wave, of zone boundary, is hyperbolic in the modes 3 and -3."""
-    wave = symfpu.breather_at_amplitude(chain, seed, amplitude)
+    wave = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     expected, found = symfpu.floquet(wave), normal_modes(wave)
     assert [mode.mode for mode in found.modes] == [q for q in chain.mode_numbers if q != seed]
     assert_multipliers(found, expected)
@@ -54,7 +54,7 @@ def test_todas_are_those_of_its_spectral_curve():
 def test_a_normal_frequency_is_that_of_a_wave_more_at_rest():
     """The 2-torus of 1 and -3 with a small wave -3: it misses sigma_-3 by the square of that amplitude."""
     chain = ring(9, beta=1)
-    sigma = normal_modes(symfpu.breather_at_amplitude(chain, 1, "0.2")).frequencies[-3]
+    sigma = normal_modes(symfpu.torus(chain, (1,), amplitudes={1: "0.2"})).frequencies[-3]
     linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
     guess = two_waves(chain, [f"{linear[q] * 1.001:.12f}" for q in (1, -3)], 6)
     missed = [float(symfpu.refine(guess, amplitudes={1: "0.2", -3: A}).omega[-3]) - sigma for A in ("0.02", "0.01")]
@@ -112,7 +112,7 @@ def test_resonances_keep_the_wave():
 
 
 def test_the_verb_has_series_of_a_ring_and_why_one_has_none(tmp_path, capsys):
-    wave = symfpu.breather_at_amplitude(ring(6, beta=1), 1, "0.3")
+    wave = symfpu.torus(ring(6, beta=1), (1,), amplitudes={1: "0.3"})
     assert main(["stability", str(save(tmp_path / "wave", wave)), "--series", "4", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["series"]
     assert found["2"]["closed_shift"] is None
@@ -131,7 +131,7 @@ STANDING = [(Chain(4, alpha="0.3", beta="0.4"), 1, "0.5"), (Chain(5, beta=1), 2,
 @pytest.mark.parametrize(("chain", "seed", "amplitude"), STANDING, ids=repr)
 def test_of_standing_waves_they_are_the_multipliers_and_those_of_fixed_ends(chain, seed, amplitude):
     """Sines are the normal modes of the fixed ends; the cosine of the seed is hyperbolic in both."""
-    breather = breather_at_amplitude(chain, seed, amplitude)
+    breather = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     waves = unfold(breather)
     expected, found = symfpu.floquet(waves), normal_modes(waves)
     assert_multipliers(found, expected)
@@ -160,7 +160,7 @@ def test_variations_of_standing_waves():
 
 def test_a_displacement_that_costs_nothing_is_named():
     """N = 8: sigma_-1 and omega_1 are apart by an Umklapp of high order alone. The others are found."""
-    waves = unfold(breather_at_amplitude(Chain(8, beta=1), 1, "0.3"))
+    waves = unfold(symfpu.torus(Chain(8, beta=1), (1,), amplitudes={1: "0.3"}))
     reason = r"mode -1 .*sigma_-1 = \(1\)\.omega, off by"
     for named in ([-1], [-2, -1, 2]):
         with pytest.raises(symfpu.NoNormalModes, match=reason):
@@ -175,7 +175,7 @@ def test_a_displacement_that_costs_nothing_is_named():
 
 
 def test_a_missing_mode_leaves_the_verdict_open(tmp_path, capsys):
-    file = str(save(tmp_path / "waves", unfold(breather_at_amplitude(Chain(8, beta=1), 1, "0.3"))))
+    file = str(save(tmp_path / "waves", unfold(symfpu.torus(Chain(8, beta=1), (1,), amplitudes={1: "0.3"}))))
     kept = str(tmp_path / "modes.symfpu")
     assert main(["stability", file, "--json", "--save", kept]) == 0
     record = json.loads(capsys.readouterr().out)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_amplitude, normal_modes, solve_normal_frequency
+from symfpu import Chain, InputError, normal_modes, solve_normal_frequency
 from tests.normal.cases import torus
 from tests.tolerances import NORMAL_CONVERGED, OBSERVED_ORDER, THIRTY_DIGITS
 
@@ -29,7 +29,7 @@ def test_what_the_series_misses_is_of_the_next_order(model):
 
 
 def test_the_solution_solves_the_equation_with_digits():
-    solution = symfpu.torus_at_amplitudes(Chain(4, beta=1), {1: "0.1"}, order=3, digits=30)
+    solution = symfpu.torus(Chain(4, beta=1), (1,), amplitudes={1: "0.1"}, method="series", order=3, digits=30)
     found = solve_normal_frequency(solution, 3, 3, digits=30)
     assert abs(found.at(solution.amplitudes) / found.sigma - 1) < THIRTY_DIGITS
     doubles = solve_normal_frequency(solution, 3, 3)
@@ -45,7 +45,7 @@ def test_a_hyperbolic_direction_is_refused():
 
 
 def test_arguments_out_of_range_are_refused():
-    breather = breather_at_amplitude(Chain(4, beta=1), 2, "0.1")
+    breather = symfpu.torus(Chain(4, beta=1), (2,), amplitudes={2: "0.1"})
     for arguments, message in (((2, 3), "no seed"), ((4, 3), "^mode"), ((1, 0), "^order")):
         with pytest.raises(InputError, match=message):
             solve_normal_frequency(breather, *arguments)
@@ -59,7 +59,7 @@ def test_what_the_series_of_a_ring_misses_is_of_the_next_order(law):
     chain, order = Chain(8, ends="periodic", **law), 2
     missing = []
     for amplitude in ("0.1", "0.2"):
-        solution = breather_at_amplitude(chain, 1, amplitude)
+        solution = symfpu.torus(chain, (1,), amplitudes={1: amplitude})
         exact = normal_modes(solution).frequencies
         assert set(exact) == {-3, -2, -1, 2, 3, 4}
         missing.append([abs(solve_normal_frequency(solution, q, order).sigma - w) for q, w in exact.items()])
@@ -69,7 +69,7 @@ def test_what_the_series_of_a_ring_misses_is_of_the_next_order(law):
 
 
 def test_the_series_of_a_ring_is_that_of_its_amplitudes():
-    solution = breather_at_amplitude(Chain(8, alpha="0.3", ends="periodic"), 1, "0.2")
+    solution = symfpu.torus(Chain(8, alpha="0.3", ends="periodic"), (1,), amplitudes={1: "0.2"})
     found = solve_normal_frequency(solution, -3, 4)
     given = symfpu.normal_frequency_series(solution.chain, (1,), -3, 4, found.frequencies)
     assert given.at({1: 0.2}) == pytest.approx(found.sigma, abs=NORMAL_CONVERGED)
@@ -77,11 +77,11 @@ def test_the_series_of_a_ring_is_that_of_its_amplitudes():
 
 
 def test_a_ring_has_no_other_series_than_of_travelling_waves_in_doubles():
-    solution = breather_at_amplitude(Chain(8, alpha="0.3", ends="periodic"), 1, "0.2")
+    solution = symfpu.torus(Chain(8, alpha="0.3", ends="periodic"), (1,), amplitudes={1: "0.2"})
     with pytest.raises(InputError, match=r"^digits"):
         solve_normal_frequency(solution, 2, 2, digits=30)
     with pytest.raises(InputError, match="standing"):
-        solve_normal_frequency(symfpu.unfold(breather_at_amplitude(Chain(4, beta=1), 1, "0.1")), 2, 2)
+        solve_normal_frequency(symfpu.unfold(symfpu.torus(Chain(4, beta=1), (1,), amplitudes={1: "0.1"})), 2, 2)
     with pytest.raises(InputError, match="on a ring give frequencies="):
         symfpu.normal_frequency_series(solution.chain, (1,), 2, 2)
     with pytest.raises(InputError, match="fixed ends"):

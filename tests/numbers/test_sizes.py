@@ -12,7 +12,7 @@ import sympy
 from sympy.polys.matrices import DomainMatrix
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_energy, frequency_rank, group_energy, integrate, lindstedt, series_bytes
+from symfpu import Chain, InputError, frequency_rank, group_energy, integrate, lindstedt, series_bytes
 from symfpu.chain.powers import Powers
 from symfpu.chain.propagation import _orders
 from tests.results import two_angles
@@ -32,8 +32,8 @@ ORDERS = {
     "lemma_holds": lambda k: symfpu.lemma_holds(ALPHA, (1, 2), k),
     "prove_propagation": lambda k: symfpu.prove_propagation(8, (1, 2), k),
     "prove_propagation, toda": lambda k: symfpu.prove_propagation(8, (1, 2), k, potential="toda:1/2"),
-    "torus_at_energy": lambda k: symfpu.torus_at_energy(ALPHA, (1, 2), "0.01", order=k),
-    "torus_at_amplitudes": lambda k: symfpu.torus_at_amplitudes(ALPHA, {1: "0.1"}, order=k),
+    "torus of an energy": lambda k: symfpu.torus(ALPHA, (1, 2), energy="0.01", method="series", order=k),
+    "torus of amplitudes": lambda k: symfpu.torus(ALPHA, (1,), amplitudes={1: "0.1"}, method="series", order=k),
     "coupling_sequence": lambda k: symfpu.coupling_sequence(8, (1, 2), k, potential="toda:1/2"),
 }
 SETS = {
@@ -144,7 +144,7 @@ def orbit():
 
 
 def ring_wave():
-    return symfpu.breather_at_amplitude(Chain(8, beta=1, ends="periodic"), 1, "0.1")
+    return symfpu.torus(Chain(8, beta=1, ends="periodic"), (1,), amplitudes={1: "0.1"})
 
 
 def ring_series():
@@ -153,7 +153,7 @@ def ring_series():
 
 @cache
 def small_orbit():
-    return symfpu.breather_at_amplitude(ALPHA, 1, "0.1")
+    return symfpu.torus(ALPHA, (1,), amplitudes={1: "0.1"})
 
 
 @cache
@@ -162,12 +162,12 @@ def small_family():
 
 
 REFUSED = {
-    "a seed before the energy": (lambda: breather_at_energy(ALPHA, 8, "1e-400"), "seeds = 8"),
-    "an energy below all doubles": (lambda: breather_at_energy(ALPHA, 1, "1e-400"), "energy.*1e-50 to 1e50"),
-    "an energy above them": (lambda: breather_at_energy(ALPHA, 1, "1e400"), "energy.*1e-50 to 1e50"),
-    "an amplitude": (lambda: symfpu.breather_at_amplitude(ALPHA, 1, "1e400"), "amplitude"),
-    "a frequency": (lambda: symfpu.periodic_orbit(ALPHA, 1, "1e400"), "frequency.*up to 1000000"),
-    "a breather of a long chain": (lambda: breather_at_energy(Chain(100_000, beta=1), 1, "0.1"), "N = 100000.*take [1-9]"),
+    "a seed before the energy": (lambda: symfpu.torus(ALPHA, (8,), energy="1e-400"), "seeds = 8"),
+    "an energy below all doubles": (lambda: symfpu.torus(ALPHA, (1,), energy="1e-400"), "energy.*1e-50 to 1e50"),
+    "an energy above them": (lambda: symfpu.torus(ALPHA, (1,), energy="1e400"), "energy.*1e-50 to 1e50"),
+    "an amplitude": (lambda: symfpu.torus(ALPHA, (1,), amplitudes={1: "1e400"}), "amplitude"),
+    "a frequency": (lambda: symfpu.torus(ALPHA, (1,), frequencies=("1e400",)), "frequencies, omega_1.*1e-6 to 1e6"),
+    "a breather of a long chain": (lambda: symfpu.torus(Chain(100_000, beta=1), (1,), energy="0.1"), "N = 100000.*take [1-9]"),
     "a shift": (lambda: symfpu.frequency_shift(ALPHA, {1: 1e300}), "A_1.*up to 1e\\+25"),
     "a start": (lambda: integrate(ALPHA, [10**400] + [0] * 6, AT_REST, 1.0, step=0.1), "Q = "),
     "samples": (lambda: integrate(ALPHA, AT_REST + 0.1, AT_REST, 1e12, step=0.1, samples=10**12), "samples.*free memory"),
@@ -186,7 +186,7 @@ REFUSED = {
     "a high power": (lambda: symfpu.collect_terms((X + 1) ** 100_000, [X]), "terms when expanded"),
     "points": (lambda: symfpu.prove_propagation(8, (1, 4), 2, points=10**9), "points = .*from 0 to 1000"),
     "a tolerance": (
-        lambda: symfpu.refine(ring_wave(), energy="0.01", harmonic=True, tolerance=mpmath.mpf("1e-400")),
+        lambda: symfpu.refine(ring_wave(), energy=symfpu.Energy("0.01", harmonic=True), tolerance=mpmath.mpf("1e-400")),
         "tolerance.*between 0 and 1",
     ),
     "complex coordinates": (lambda: ALPHA.stretches(np.ones(7, dtype=complex)), "Q = .*an array of real numbers"),
@@ -199,7 +199,7 @@ REFUSED = {
         "t = .*allowed is .*(an array of them|array of finite numbers)",
     ),
     "an energy of a map": (lambda: symfpu.frequency_map(ALPHA, ["1e400"], T=100, step=0.1), "energies = '1e400'.*1e-50 to 1e50"),
-    "an energy of a torus": (lambda: symfpu.refine(ring_wave(), energy="1e400", harmonic=True), "energy.*1e-50 to 1e50"),
+    "an energy of a torus": (lambda: symfpu.refine(ring_wave(), energy=symfpu.Energy("1e400", harmonic=True)), "energy.*1e-50 to 1e50"),
     "a degree of shifts": (lambda: ALPHA.shift_degrees(10**400), "highest"),
     "a power of forces": (lambda: ALPHA.relative_couplings(2**63), "highest"),
     "a number of bonds": (lambda: Chain(np.zeros(0), alpha=1), "N = array"),

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symfpu import Chain, lindstedt, periodic_orbit, refine, solve_amplitudes
+import symfpu
+from symfpu import Chain, lindstedt, refine, solve_amplitudes
 from symfpu.paper import corrected, series_errors
 from symfpu.paper.corrected import HEAVY_ROWS, CorrectedRow, corrected_row, corrected_rows, left_out
 from symfpu.paper.corrected_page import corrected_line, corrected_record, corrected_text
@@ -41,7 +42,7 @@ def test_a_breather_is_the_periodic_orbit(label):
     """Two solvers: long doubles with Krylov steps, and harmonic balance in doubles."""
     printed = replace(BY_LABEL[label], order=4)
     row = corrected_row(printed)
-    orbit = periodic_orbit(printed.chain, printed.seeds[0], printed.frequencies[0])
+    orbit = symfpu.torus(printed.chain, (printed.seeds[0],), frequencies=(printed.frequencies[0],))
     (amplitude,) = row.torus.amplitudes.values()
     assert amplitude == pytest.approx(orbit.amplitude, rel=CONVERGED_DIGITS)
     assert row.energies["H"] == pytest.approx(orbit.energy(), rel=CONVERGED_DIGITS)

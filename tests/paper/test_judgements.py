@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from symfpu import Chain, refine, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, refine
 from symfpu.dynamics.dimension import DECADES
 from symfpu.figures.alignment import alignment_panel
 from symfpu.paper.claims import FAILS, HOLDS, OPEN, PARTLY
@@ -74,7 +75,7 @@ def test_as_many_dimensions_as_vectors_decide_nothing():
 @pytest.mark.parametrize(("printed", "after", "verdict"), [(2, None, HOLDS), (2, 1.0, PARTLY), (3, None, FAILS)])
 def test_a_dimension_foretold(printed, after, verdict):
     """From the exact torus; the time at which G_3 settles is one of the frames' or not."""
-    torus = refine(torus_at_amplitudes(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.2"}, 6))
+    torus = refine(symfpu.torus(Chain(8, alpha="0.3"), (1, 2), amplitudes={1: "0.3", 2: "0.2"}, method="series", order=6))
     frames = TorusForecast(torus, 4).frames()
     settled = after or frames[0].settling()[3] / 10**DECADES
     claim = foretold_claim("4", "a torus", printed, frames, FigureIndices(alignment(2, vectors=4)), (3, settled))

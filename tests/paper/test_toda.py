@@ -6,7 +6,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from symfpu import Chain, periodic_orbit, toda, toda_torus
+import symfpu
+from symfpu import Chain, toda, toda_torus
 from symfpu.paper import toda_fig1, toda_orbits
 from symfpu.paper.claims_page import figure_markdown, figure_record
 from symfpu.paper.convergence_fig9 import series_end
@@ -125,7 +126,7 @@ def test_the_series_of_toda_s_breather_ends_before_it():
     (omega,) = FIG9_BREATHER.frequencies
     chain = Chain(FIG9_BREATHER.chain.N, potential=toda(FIG9_BREATHER.chain.alpha))
     end, reached = series_end(chain, 1, omega)
-    orbit = periodic_orbit(chain, 1, omega)
+    orbit = symfpu.torus(chain, (1,), frequencies=(omega,))
     assert end == pytest.approx(TODA_END, abs=SERIES_END)
     assert reached < float(omega)
     assert orbit.amplitude < end

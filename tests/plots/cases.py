@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 import symfpu
-from symfpu import Chain, amplitude_history, assess, breather_at_amplitude, family, fpu_trajectory, integrate, lindstedt, solve_amplitudes
+from symfpu import Chain, amplitude_history, assess, family, fpu_trajectory, integrate, lindstedt, solve_amplitudes
 
 ALPHA = Chain(16, alpha="0.33")
 TODA = Chain(7, potential="toda:1/2")
@@ -30,22 +30,22 @@ def single():
 @cache
 def breather(N=9, seed=2):
     """Of an odd number of bonds, beta."""
-    return breather_at_amplitude(Chain(N, beta=1), seed, "0.3")
+    return symfpu.torus(Chain(N, beta=1), (seed,), amplitudes={seed: "0.3"})
 
 
 @cache
 def one_mode():
-    return breather_at_amplitude(Chain(2, beta=1), 1, "0.3")
+    return symfpu.torus(Chain(2, beta=1), (1,), amplitudes={1: "0.3"})
 
 
 @cache
 def toda_torus():
-    return symfpu.torus_at_amplitudes(TODA, {1: "0.1", 2: "0.05"}, 5)
+    return symfpu.torus(TODA, (1, 2), amplitudes={1: "0.1", 2: "0.05"}, method="series", order=5)
 
 
 @cache
 def three_seeds():
-    return symfpu.torus_at_amplitudes(Chain(9, alpha="0.3"), {1: "0.1", 2: "0.1", 3: "0.05"}, 3)
+    return symfpu.torus(Chain(9, alpha="0.3"), (1, 2, 3), amplitudes={1: "0.1", 2: "0.1", 3: "0.05"}, method="series", order=3)
 
 
 @cache
@@ -65,7 +65,7 @@ def normal():
 
 @cache
 def one_of_five():
-    return breather_at_amplitude(Chain(N=6, alpha="0.3"), 2, "0.2")
+    return symfpu.torus(Chain(N=6, alpha="0.3"), (2,), amplitudes={2: "0.2"})
 
 
 @cache

@@ -356,7 +356,7 @@ def test_multipliers_lie_where_they_are_and_are_counted(ax):
 
 
 def test_large_multipliers_stand_at_the_edge_with_their_number(ax):
-    found = floquet(symfpu.breather_at_amplitude(Chain(16, beta=1), 8, "8"))
+    found = floquet(symfpu.torus(Chain(16, beta=1), (8,), amplitudes={8: "8"}))
     assert found.largest > 3
     plots.multipliers(found, ax)
     assert any(f"{found.largest:.3g}" in text.get_text() for text in ax.texts)

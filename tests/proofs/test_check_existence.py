@@ -9,7 +9,8 @@ from functools import cache
 import mpmath
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, breather_at_energy, prove_existence
+import symfpu
+from symfpu import Chain, prove_existence
 from symfpu.certified.force_series import ball, of_growth
 from symfpu.certified.packed_integers import packed
 from symfpu.chain.potentials.potential import Growth as ProverGrowth
@@ -24,17 +25,17 @@ from tests.proofs.certificate_files import altered, bounds_of, check_refused, re
 
 
 def both():
-    return breather_at_amplitude(Chain(3, alpha="0.3", beta="1/7"), 1, "0.3")
+    return symfpu.torus(Chain(3, alpha="0.3", beta="1/7"), (1,), amplitudes={1: "0.3"})
 
 
 def wave():
-    return breather_at_amplitude(Chain(5, alpha="0.3", beta="1/7", ends="periodic"), 1, "0.3")
+    return symfpu.torus(Chain(5, alpha="0.3", beta="1/7", ends="periodic"), (1,), amplitudes={1: "0.3"})
 
 
 MADE = {
     "frequency": lambda: prove_existence(both()),
     "amplitude": lambda: prove_existence(both(), amplitude="0.3"),
-    "energy": lambda: prove_existence(breather_at_energy(Chain(3, potential="toda:1/2"), 1, "0.02"), energy="0.02"),
+    "energy": lambda: prove_existence(symfpu.torus(Chain(3, potential="toda:1/2"), (1,), energy="0.02"), energy="0.02"),
     "segment of amplitude": lambda: prove_existence(both(), amplitude="0.3", half_width="1e-5"),
     "segment of frequency": lambda: prove_existence(both(), half_width="1e-6"),
     "segment of energy": lambda: prove_existence(both(), energy="0.0453646", half_width="1e-6"),
@@ -158,7 +159,7 @@ def test_where_the_force_rounds_to_nothing_the_linear_part_counts(tmp_path):
 
 def test_a_harmonic_that_the_orbit_lacks_is_seen_where_products_are_cut(tmp_path):
     """An orbit of A = 1e-20 with 4 2^-bits added at harmonic 9, ten times the radius."""
-    small = prove_existence(breather_at_amplitude(Chain(3, alpha="0.3"), 1, "1e-20"), amplitude="1e-20")
+    small = prove_existence(symfpu.torus(Chain(3, alpha="0.3"), (1,), amplitudes={1: "1e-20"}), amplitude="1e-20")
     data = copy.deepcopy(small.certificate())
     assert reason(verify, data, tmp_path) is None
     assert small.radius < 2.0 ** -data["bits"]

@@ -7,10 +7,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, prove_stability
+import symfpu
+from symfpu import Chain, prove_stability
 from symfpu.proofs.check_stability import verify
 from symfpu.proofs.check_stability.bounds import INVERSE_BITS, inverse_of
 from symfpu.proofs.check_stability.slopes import ONE, PLACES
+from tests.breather import breather_of
 from tests.proofs.certificate_files import altered, check_refused, reason, sealed
 from tests.tolerances import INVERSE_OF_BLOCK
 
@@ -23,8 +25,8 @@ CASES = {
 @cache
 def certificate(name):
     if name == "of its amplitude":
-        return prove_stability(breather_at_amplitude(Chain(4, alpha="1/2"), 2, 1), amplitude=1).certificate()
-    return prove_stability(breather_at_amplitude(*CASES[name])).certificate()
+        return prove_stability(symfpu.torus(Chain(4, alpha="1/2"), (2,), amplitudes={2: 1}), amplitude=1).certificate()
+    return prove_stability(breather_of(*CASES[name])).certificate()
 
 
 def sealed_inside(data):

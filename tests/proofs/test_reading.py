@@ -7,7 +7,8 @@ from fractions import Fraction
 
 import pytest
 
-from symfpu import Chain, breather_at_amplitude, prove_existence, prove_for_all_N, prove_propagation, prove_residual, prove_stability
+import symfpu
+from symfpu import Chain, prove_existence, prove_for_all_N, prove_propagation, prove_residual, prove_stability
 from symfpu.proofs import check_every_length, check_existence, check_propagation, check_stability, check_torus
 from symfpu.proofs.checkers import CHECKERS, verify_certificate
 from symfpu.proofs.reading import CertificateError, Kind, check_kind, dyadic, fraction, need, read_kind, verified, whole
@@ -117,7 +118,7 @@ MADE = {
     check_every_length.FORMAT: lambda: prove_for_all_N("beta", 2, 1),
     check_existence.FORMAT: lambda: prove_existence(results.orbit()),
     check_propagation.FORMAT: lambda: prove_propagation(8, (1, 4), 3, model="beta"),
-    check_stability.FORMAT: lambda: prove_stability(breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.2")),
+    check_stability.FORMAT: lambda: prove_stability(symfpu.torus(Chain(4, alpha="0.3"), (1,), amplitudes={1: "0.2"})),
     check_torus.FORMAT: lambda: prove_residual(results.two_angles()),
 }
 

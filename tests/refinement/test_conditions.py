@@ -6,12 +6,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from symfpu import Chain, Torus, refine, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, Torus, refine
 from symfpu.refinement.conditions import (
     Amplitude,
     AmplitudeRatio,
     Crossing,
-    Energy,
+    EnergyLevel,
     EnergyRatio,
     FrequencyShift,
     Plane,
@@ -67,8 +68,8 @@ def met(state):
         "amplitude": Amplitude(2, A[2]),
         "amplitude ratio": AmplitudeRatio(1, float(A[1] / A[0])),
         "energy ratio": EnergyRatio(2, float(spectrum[2] / spectrum[1])),
-        "energy": Energy(np.longdouble(torus.energy()), harmonic=False),
-        "harmonic energy": Energy(np.longdouble(torus.harmonic_energies().sum()), harmonic=True),
+        "energy": EnergyLevel(np.longdouble(torus.energy()), harmonic=False),
+        "harmonic energy": EnergyLevel(np.longdouble(torus.harmonic_energies().sum()), harmonic=True),
         "start": Start(1, np.longdouble(turned.Q(0.0)[SEEDS[1] - 1]), PHASES, 0.7),
         "plane": Plane(tuple(plane_variables(state.equation, state.cosines, state.shifts, scales)), tangent, scales, 0.0),
     }
@@ -90,7 +91,7 @@ def derivative(function):
 
 def test_energies_at_the_start_and_in_the_mean():
     """On a torus H is the same at all angles; the harmonic energy is not, and each of its two names is what it says."""
-    torus = refine(torus_at_amplitudes(Chain(6, alpha="0.3"), {1: "0.3", 2: "0.2"}, order=4))
+    torus = refine(symfpu.torus(Chain(6, alpha="0.3"), (1, 2), amplitudes={1: "0.3", 2: "0.2"}, method="series", order=4))
     equation = InvarianceEquation(torus.chain, torus.seeds, torus.harmonics)
     c, shifts = torus.cosines.astype(np.longdouble), shifts_of(torus)
     start, mean = equation.energy_at_start(c)[0], equation.mean_energy(c, shifts)[0]

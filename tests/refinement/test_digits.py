@@ -1,5 +1,6 @@
 """Tori of many digits against breathers of many digits, Toda's spectral curve, more digits, and the equations of motion at angles."""
 
+from dataclasses import replace
 from functools import cache
 
 import mpmath
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import BundleError, Chain, InputError, NoTorus, actions, load, refine, save, torus_at_amplitudes
+from symfpu import BundleError, Chain, InputError, NoTorus, actions, load, refine, save
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.digits import TorusProblem, guess_of
 from symfpu.refinement.prescribed import Frequencies
@@ -38,7 +39,11 @@ def ten(exponent):
 
 @cache
 def small(digits):
-    return refine(torus_at_amplitudes(SMALL, SMALL_AMPLITUDES, order=3), amplitudes=SMALL_AMPLITUDES, digits=digits)
+    return refine(
+        symfpu.torus(SMALL, tuple(SMALL_AMPLITUDES), amplitudes=SMALL_AMPLITUDES, method="series", order=3),
+        amplitudes=SMALL_AMPLITUDES,
+        digits=digits,
+    )
 
 
 def farthest(one, two):
@@ -90,7 +95,7 @@ def test_frequencies_lead_back_to_the_amplitudes_from_fewer_digits():
 
 def test_one_angle_is_the_sum_of_the_series():
     """Of 40 digits, to order 15 in an amplitude of 1/100: another algorithm, without any matrix."""
-    orbit = symfpu.breather_at_amplitude(Chain(6, alpha="0.3", beta="0.1"), 2, "0.01")
+    orbit = symfpu.torus(Chain(6, alpha="0.3", beta="0.1"), (2,), amplitudes={2: "0.01"})
     series = symfpu.lindstedt(orbit.chain, orbit.seeds, orbit.frequencies, 15, digits=40)
     found, summed = refine(orbit, digits=40), symfpu.solve_amplitudes(series)
     assert 0 < farthest(found, summed) < ten(-28)
@@ -100,7 +105,7 @@ def test_one_angle_is_the_sum_of_the_series():
 
 def test_a_torus_that_runs_away_is_refused():
     """alpha, N = 4, seed 2: omega = Omega_2 at every amplitude, and that of doubles is not quite Omega_2."""
-    near = refine(symfpu.breather_at_amplitude(Chain(4, alpha="0.5"), 2, "0.3"), amplitudes={2: "0.3"})
+    near = refine(symfpu.torus(Chain(4, alpha="0.5"), (2,), amplitudes={2: "0.3"}), amplitudes={2: "0.3"})
     with pytest.raises(NoTorus, match=r"A_2 goes from 0\.3 to (0|-?[0-9.]+e-)"):
         refine(near, digits=20)
 
@@ -110,12 +115,12 @@ def test_two_bonds_swing_as_elliptic_functions_do():
     with mpmath.workdps(40):
         squared = chain.linear_frequency(1) ** 2
         omega, amplitude = duffing(squared, mpmath.mpf("0.5") / 4 * squared**2 * chain.C(1, 1, 1, 1), mpmath.mpf("0.5"))
-        found = refine(symfpu.periodic_orbit(chain, 1, mpmath.nstr(omega, 33)), digits=28)
+        found = refine(symfpu.torus(chain, (1,), frequencies=(mpmath.nstr(omega, 33),)), digits=28)
         assert abs(found.amplitude / amplitude - 1) < ten(-27)
 
 
 def test_phases_are_kept_and_actions_have_the_digits():
-    guess = torus_at_amplitudes(Chain(3, beta="0.5"), {1: "0.1", 2: "0.1"}, order=2, phases={1: 0.5, 2: "1.25"})
+    guess = replace(symfpu.torus(Chain(3, beta="0.5"), (1, 2), amplitudes={1: "0.1", 2: "0.1"}), phases={1: 0.5, 2: 1.25})
     fewer, more = refine(guess, digits=16), refine(guess, digits=24)
     assert [float(phi) for phi in more.phases.values()] == [0.5, 1.25]
     with mpmath.workdps(40):
@@ -129,7 +134,7 @@ def test_few_and_many_digits_agree(name, tmp_path):
     """30 and 50 of two angles; three have digits cubed as many harmonics."""
     chain, amplitudes = CASES[name]
     low, high = (16, 20) if len(amplitudes) > 2 else (30, 50)
-    near = refine(torus_at_amplitudes(chain, amplitudes, order=3))
+    near = refine(symfpu.torus(chain, tuple(amplitudes), amplitudes=amplitudes, method="series", order=3))
     fewer, more = refine(near, digits=low), refine(near, digits=high)
     assert 0 < farthest(fewer, more) < ten(-low)
     assert 0 < more.residuals(2).max() < more.origin.bound * largest_acceleration(more)
@@ -146,7 +151,7 @@ def test_few_and_many_digits_agree(name, tmp_path):
 @pytest.mark.long
 def test_toda_has_the_energy_and_actions_of_the_spectral_curve():
     chain = Chain(4, potential="toda:1/2")
-    near = refine(torus_at_amplitudes(chain, {1: "0.1", 2: "0.1"}, order=4))
+    near = refine(symfpu.torus(chain, (1, 2), amplitudes={1: "0.1", 2: "0.1"}, method="series", order=4))
     found = refine(near, digits=32)
     exact = symfpu.toda_torus(chain, (1, 2), frequencies=near.frequencies, digits=35)
     with mpmath.workdps(50):
@@ -169,7 +174,7 @@ def test_a_wrong_digit_is_seen():
 
 
 def test_the_bound_of_a_breather_sees_a_digit_in_the_thirtieth_place():
-    orbit = symfpu.breather_at_amplitude(Chain(6, alpha="0.4", beta="0.2"), 5, "0.6")
+    orbit = symfpu.torus(Chain(6, alpha="0.4", beta="0.2"), (5,), amplitudes={5: "0.6"})
     with mpmath.workdps(60):
         guess = guess_of(orbit, Frequencies(orbit.chain, orbit.seeds, orbit.frequencies))
         problem = TorusProblem(guess, np.arange(61)[:, None], 30, unheard, no_file)
@@ -242,7 +247,7 @@ def test_what_has_no_digits_is_refused_by_name():
     for digits in (0, 1001, 2.5):
         with pytest.raises(InputError, match=r"^digits = "):
             refine(near, digits=digits)
-    sinh = torus_at_amplitudes(Chain(2, potential="expr:cosh(r)-1"), {1: "0.1"}, order=2)
+    sinh = symfpu.torus(Chain(2, potential="expr:cosh(r)-1"), (1,), amplitudes={1: "0.1"}, method="series", order=2)
     with pytest.raises(InputError, match=r"^torus = .*exponentials and powers"):
         refine(sinh, digits=20)
 

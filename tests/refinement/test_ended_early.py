@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import scipy.sparse.linalg
 
-from symfpu import Chain, NoTorus, refine, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, NoTorus, refine
 from symfpu.borders import newton_end
 from symfpu.borders.point import Ray
 from symfpu.refinement import linear_system, newton, refined_torus
@@ -17,7 +18,7 @@ BLOCK = 8  # unknowns that are solved for directly
 
 
 def guess(amplitudes=NEAR):
-    return torus_at_amplitudes(CHAIN, amplitudes, order=6)
+    return symfpu.torus(CHAIN, tuple(amplitudes), amplitudes=amplitudes, method="series", order=6)
 
 
 @pytest.fixture
@@ -82,7 +83,9 @@ def test_before_that_there_is_no_torus(solver):
 def two_choices_of_harmonics():
     """From the lowest series, whose fall-off asks for half as many harmonics as are needed: 122 leave 2.9e-11."""
     amplitudes = {1: "0.4", 2: "0.2"}
-    return refine(torus_at_amplitudes(Chain(8, beta="0.3"), amplitudes, order=1), amplitudes=amplitudes)
+    return refine(
+        symfpu.torus(Chain(8, beta="0.3"), tuple(amplitudes), amplitudes=amplitudes, method="series", order=1), amplitudes=amplitudes
+    )
 
 
 @pytest.mark.parametrize("level", [USEFUL, 1e-11])

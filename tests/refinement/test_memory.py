@@ -7,7 +7,8 @@ import sys
 import psutil
 import pytest
 
-from symfpu import Chain, InputError, TorusTooLarge, refine, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, InputError, TorusTooLarge, refine
 from symfpu.refinement import memory, search, tori
 from tests.tori.test_ring_torus import torus as waves
 
@@ -16,7 +17,7 @@ from pathlib import Path
 import scipy.fft, scipy.linalg, scipy.sparse.linalg
 from symfpu.chain.chain import Chain
 from symfpu.refinement import search, tori
-from symfpu.tori.frequencies import torus_at_amplitudes
+import symfpu
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.series.lindstedt import lindstedt
 {guess}
@@ -31,7 +32,7 @@ print(status("VmHWM:") - before, max(sizes))
 """
 FIXED = """
 wanted = {{q: repr({scale} / q) for q in range(1, {s} + 1)}}
-near = torus_at_amplitudes(Chain({N}, {law}), wanted, order={order})
+near = symfpu.torus(Chain({N}, {law}), tuple(wanted), amplitudes=wanted, method="series", order={order})
 """
 RING = """
 chain = Chain(16, potential="lj:12,6", ends="periodic")
@@ -73,7 +74,7 @@ def test_the_peak_is_that_predicted_or_less(name):
 
 
 def near(chain, wanted):
-    return torus_at_amplitudes(chain, wanted, order=2)
+    return symfpu.torus(chain, tuple(wanted), amplitudes=wanted, method="series", order=2)
 
 
 @pytest.mark.parametrize("stage", ["before its equations", pytest.param("before the first step", marks=pytest.mark.long)])

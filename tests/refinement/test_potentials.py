@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, assess, refine, resum, torus_at_amplitudes, torus_at_energy
+from symfpu import Chain, assess, refine, resum
 from symfpu.refinement.invariance import InvarianceEquation
 from tests.tolerances import FIXED_ENERGY, PROMISED_RESIDUAL, SLOPE
 
@@ -20,7 +20,9 @@ EVERY_LAW = pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize(("N", "seeds"), [(2, (1,)), (8, (1, 2)), (9, (2, 5))])
 def test_refined_tori_solve_the_closed_equations_of_motion(law, N, seeds):
     chain = Chain(N, potential=law)
-    guess = torus_at_amplitudes(chain, {q: LAWS[law] / q for q in seeds}, order=4)
+    guess = symfpu.torus(
+        chain, tuple({q: LAWS[law] / q for q in seeds}), amplitudes={q: LAWS[law] / q for q in seeds}, method="series", order=4
+    )
     torus = refine(guess)
     assert torus.residual() < PROMISED_RESIDUAL
     assert guess.residual() > 1e3 * torus.residual()
@@ -35,7 +37,7 @@ def test_frequencies_of_series_err_by_the_next_order(law):
     errors = {}
     for K, part in itertools.product((2, 4), (1, 0.5)):
         amplitudes = {1: part * LAWS[law], 2: part * LAWS[law] / 2}
-        series = torus_at_amplitudes(chain, amplitudes, order=K)
+        series = symfpu.torus(chain, tuple(amplitudes), amplitudes=amplitudes, method="series", order=K)
         exact = symfpu.refine(series, amplitudes=amplitudes)
         off = [float(a - b) for a, b in zip(series.frequencies, exact.frequencies, strict=True)]
         errors[K, part] = max(map(abs, off))
@@ -50,7 +52,7 @@ def test_frequencies_of_series_err_by_the_next_order(law):
 def test_a_torus_has_the_energy_asked_for_and_its_verdict(law):
     chain = Chain(8, potential=law)
     energy = "1e-6" if law == "lj:12,6" else "3e-4"
-    torus = torus_at_energy(chain, (1, 2), energy, harmonic=False, order=6)
+    torus = symfpu.torus(chain, (1, 2), energy=energy, method="series", order=6)
     assert float(torus.energy()) == pytest.approx(float(energy), rel=FIXED_ENERGY)
     assert assess(torus.origin.series, torus).word == "converged"
     assert resum(torus).residual() < 10 * torus.residual()

@@ -5,7 +5,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from symfpu import Chain, lindstedt, refine, solve_amplitudes, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, lindstedt, refine, solve_amplitudes
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
 from symfpu.refinement import newton
 from symfpu.refinement.invariance import InvarianceEquation
@@ -54,7 +55,7 @@ def test_the_numbers_of_figures_are_those_of_long_doubles(label, monkeypatch):
 
 @lru_cache
 def small_guess():
-    return torus_at_amplitudes(Chain(8, alpha="0.3"), {1: SMALL, 2: SMALL}, order=4)
+    return symfpu.torus(Chain(8, alpha="0.3"), (1, 2), amplitudes={1: SMALL, 2: SMALL}, method="series", order=4)
 
 
 def test_small_tori_of_alpha_keep_their_digits(monkeypatch):

@@ -126,7 +126,7 @@ def test_a_wrong_digit_is_seen():
 
 
 def test_standing_waves_have_the_digits_of_fixed_ends(tmp_path):
-    fixed = symfpu.refine(symfpu.breather_at_amplitude(Chain(4, alpha="0.3"), 1, "0.2"), digits=25)
+    fixed = symfpu.refine(symfpu.torus(Chain(4, alpha="0.3"), (1,), amplitudes={1: "0.2"}), digits=25)
     standing = unfold(fixed)
     assert standing.digits == 25
     assert 0 < standing.residual(5) < ten(-25)

@@ -120,14 +120,14 @@ def test_energies_are_what_was_asked_for(name):
     assert np.isclose(at_energy.energy(1.3), 0.02, rtol=CONVERGED_DIGITS)
     sizes = [np.array(list(torus.amplitudes.values())) for torus in (guess, at_energy)]
     assert np.allclose(sizes[0] / sizes[0][0], sizes[1] / sizes[1][0], rtol=CONVERGED_DIGITS)
-    harmonic = refine(guess, energy="0.02", harmonic=True)
+    harmonic = refine(guess, energy=symfpu.Energy("0.02", harmonic=True))
     assert np.isclose(harmonic.average_spectrum().sum(), 0.02, rtol=CONVERGED_DIGITS)
 
 
 def test_a_ratio_of_energies_is_that_of_the_averaged_modes():
     """Mode N/2 is its own opposite: all of its waves are in it, half of those of the others."""
     guess = seeds_alone(ring(8, beta=1), (1, 4), (1, 2), (0.2, 0.1))
-    found = refine(guess, energy="0.05", energy_ratio={1: 1, 4: 3})
+    found = refine(guess, energy=symfpu.Energy("0.05", energy_ratio={1: 1, 4: 3}))
     spectrum = dict(zip(found.chain.mode_numbers, found.average_spectrum(), strict=True))
     assert np.isclose(spectrum[4] / spectrum[1], 3, rtol=CONVERGED_DIGITS)
 
@@ -155,7 +155,7 @@ def test_standing_waves_and_equal_frequencies_are_refused():
         refine(equal)
     free = seeds_alone(ring(16, beta=1), (2, -2), ("0.775", "0.776"), (0.2, 0.2))
     with pytest.raises(InputError, match="amplitude_ratio"):
-        refine(free, energy=1, energy_ratio={2: 1, -2: 1})
+        refine(free, energy=symfpu.Energy(1, energy_ratio={2: 1, -2: 1}))
     series = lindstedt(ring(5, beta=1), (1,), ("1.2",), 2)
     with pytest.raises(InputError, match="torus"):
         refine(series)

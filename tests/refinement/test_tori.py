@@ -140,7 +140,7 @@ def test_newtons_method_converges_quadratically(case, monkeypatch):
 def test_one_seed_is_a_periodic_orbit(case):
     torus = refined(case)
     (seed,), (frequency,) = torus.seeds, torus.frequencies
-    orbit = symfpu.periodic_orbit(torus.chain, seed, frequency)
+    orbit = symfpu.torus(torus.chain, (seed,), frequencies=(frequency,))
     assert torus.amplitudes[seed] == pytest.approx(orbit.amplitude, rel=BREATHER_HARMONICS)
     assert float(torus.energy()) == pytest.approx(orbit.energy(), rel=BREATHER_HARMONICS)
     for (n,), row in rows(torus).items():
@@ -172,7 +172,7 @@ def test_an_energy_and_a_ratio_give_the_torus_back(harmonic, ratio):
         "energy_ratio": {q: 7 * spectrum[q - 1] for q in torus.seeds},
     }
     guess = replace(torus, cosines=1.05 * torus.cosines, phases={2: 0.3, 5: 1.1})
-    back = refine(guess, energy=float(energy), harmonic=harmonic, **({} if ratio is None else {ratio: ratios[ratio]}))
+    back = refine(guess, energy=symfpu.Energy(float(energy), harmonic=harmonic, **({} if ratio is None else {ratio: ratios[ratio]})))
     start = replace(back, phases={2: 0.0, 5: 0.0})
     assert float(start.harmonic_energies().sum() if harmonic else back.energy()) == pytest.approx(float(energy), rel=REFINED_COEFFICIENT)
     assert back.phases == guess.phases
@@ -285,16 +285,21 @@ def test_a_tolerance_below_rounding_is_said_to_be_missed():
 SEARCHES = {
     "frequencies": refine,
     "amplitudes": lambda torus, **given: refine(torus, **{"amplitudes": torus.amplitudes} | given),
-    "energy": lambda torus, **given: refine(torus, **{"energy": 0.02} | given),
+    "energy": lambda torus, energy=0.02, **given: refine(torus, energy=energy, **given),
+    "ratio": lambda torus, **ratio: refine(torus, energy=symfpu.Energy(0.02, **ratio)),
 }
 WRONG_AMPLITUDES = ({}, {1: 0.1}, {1: 0.1, 2: 0.1}, {1: 0, 3: 0.1}, {1: 0.1, 3: "0.0"}, {1: 0.1, 3: "x"}, {1: 0.1, 3: float("nan")}, 1)
 WRONG_RATIOS = ({}, {1: 1}, {1: 1, 2: 1}, {1: 0, 3: 1}, {1: 1, 3: 0}, {1: 1, 3: "x"}, (1, 1), 2)
 WRONG = [
-    *((search, "tolerance", x) for search in SEARCHES for x in (0, 1, -1e-13, float("nan"), float("inf"), "small", None)),
+    *(
+        (search, "tolerance", x)
+        for search in ("frequencies", "amplitudes", "energy")
+        for x in (0, 1, -1e-13, float("nan"), float("inf"), "small", None)
+    ),
     *(("amplitudes", "amplitudes", x) for x in (*WRONG_AMPLITUDES, (0.1, 0.1))),
     *(("energy", "energy", x) for x in (0, -1, "0", "x", float("nan"), float("inf"))),
-    *(("energy", name, x) for name in ("amplitude_ratio", "energy_ratio") for x in WRONG_RATIOS),
-    ("energy", "energy_ratio", {1: 1, 3: -1}),
+    *(("ratio", name, x) for name in ("amplitude_ratio", "energy_ratio") for x in WRONG_RATIOS),
+    ("ratio", "energy_ratio", {1: 1, 3: -1}),
     *(("frequencies", "most_harmonics", x) for x in (0, 1.5, "many", True)),
 ]
 
@@ -307,7 +312,7 @@ def test_wrong_arguments_are_refused_by_name(search, name, value):
 
 def test_only_one_ratio_is_given():
     with pytest.raises(InputError, match=r"^energy_ratio .* only one of amplitude_ratio and energy_ratio"):
-        refine(refined(TWO), energy=0.02, amplitude_ratio={1: 1, 3: 1}, energy_ratio={1: 1, 3: 1})
+        refine(refined(TWO), energy=symfpu.Energy(0.02, amplitude_ratio={1: 1, 3: 1}, energy_ratio={1: 1, 3: 1}))
 
 
 def test_every_step_is_reported():
@@ -320,7 +325,7 @@ def test_every_step_is_reported():
 
 def test_a_diverging_series_is_cut_where_it_is_best():
     """Its last order leaves all of the largest acceleration, its best 1e-5; Newton's method finds the torus of the latter."""
-    torus = symfpu.torus_at_amplitudes(Chain(8, beta=1), {1: "0.3", 3: "0.2"}, order=6)
+    torus = symfpu.torus(Chain(8, beta=1), (1, 3), amplitudes={1: "0.3", 3: "0.2"}, method="series", order=6)
     assert torus.residual() > 0.5
     found, by_hand = refine(torus), refine(torus.origin.cut_at(3).torus(torus.phases))
     assert found.residual() < PROMISED_RESIDUAL
@@ -334,4 +339,4 @@ def test_a_diverging_series_is_cut_where_it_is_best():
 @pytest.mark.long
 def test_what_fails_from_a_series_says_where_it_began():
     with pytest.raises(NoTorus, match=r"its series leaves \S+ at its best order 0: follow the family of tori from less energy"):
-        refine(symfpu.torus_at_amplitudes(Chain(8, beta=1), {1: "0.8", 3: "0.8"}, order=4))
+        refine(symfpu.torus(Chain(8, beta=1), (1, 3), amplitudes={1: "0.8", 3: "0.8"}, method="series", order=4))

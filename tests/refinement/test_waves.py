@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from symfpu import Torus
-from symfpu.refinement.conditions import Amplitude, AmplitudeRatio, Energy, EnergyRatio, FrequencyShift
+from symfpu.refinement.conditions import Amplitude, AmplitudeRatio, EnergyLevel, EnergyRatio, FrequencyShift
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Lattice, places_of
 from tests.refinement.test_conditions import RICHARDSON, STEP, derivative
@@ -116,8 +116,8 @@ def conditions(law):
         "frequency": FrequencyShift(1, shifts[1] + 1),
         "amplitude": Amplitude(1, np.longdouble(0.2)),
         "amplitude ratio": AmplitudeRatio(1, 0.7),
-        "energy": Energy(H, harmonic=False),
-        "harmonic energy": Energy(H, harmonic=True),
+        "energy": EnergyLevel(H, harmonic=False),
+        "harmonic energy": EnergyLevel(H, harmonic=True),
         "energy ratio": EnergyRatio(1, 1.7),
     }
 

@@ -7,7 +7,8 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
-from symfpu import Chain, NoTorus, TorusTooLarge, refine, torus_at_amplitudes
+import symfpu
+from symfpu import Chain, NoTorus, TorusTooLarge, refine
 from symfpu.refinement import search, widening
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated, neighbours
@@ -78,7 +79,7 @@ def test_a_force_is_the_same_on_another_lattice(name):
 
 def solved(chain, amplitudes, radius):
     """Equation, cosines and shifts of a torus in a ball of harmonics."""
-    torus = refine(torus_at_amplitudes(chain, amplitudes, order=4))
+    torus = refine(symfpu.torus(chain, tuple(amplitudes), amplitudes=amplitudes, method="series", order=4))
     equation = InvarianceEquation(chain, torus.seeds, ball(len(torus.seeds), radius))
     rows = dict(zip(map(tuple, torus.harmonics.tolist()), torus.cosines, strict=True))
     nothing = np.zeros(chain.N - 1)
@@ -117,7 +118,13 @@ def small_polytopes(monkeypatch):
 
 QUICK = TORI[:2]
 MARKS = [[] if case in QUICK else [pytest.mark.long] for case in TORI]
-GUESSES = [pytest.param(partial(torus_at_amplitudes, *c, order=4), 60, id=repr(c), marks=m) for c, m in zip(TORI, MARKS, strict=True)]
+
+
+def series(chain, amplitudes):
+    return symfpu.torus(chain, tuple(amplitudes), amplitudes=amplitudes, method="series", order=4)
+
+
+GUESSES = [pytest.param(partial(series, *c), 60, id=repr(c), marks=m) for c, m in zip(TORI, MARKS, strict=True)]
 GUESSES += [pytest.param(partial(of_series, 12, {2: 0.001, 3: 0.002}, {"beta": "0.3"}), 20, id="waves")]
 
 
@@ -138,7 +145,7 @@ def test_tori_of_both_choices_are_the_same(make, most, monkeypatch):
 
 @pytest.fixture
 def guess():
-    return torus_at_amplitudes(*TORI[0], order=4)
+    return series(*TORI[0])
 
 
 @pytest.mark.usefixtures("small_polytopes")

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import symfpu
-from symfpu import BundleError, Chain, InputError, breather_at_amplitude, integrate, load, prove_existence, save
+from symfpu import BundleError, Chain, InputError, integrate, load, prove_existence, save
 from symfpu.saved.classes import CLASSES, PARTS, RESULTS
 from tests.bundles.test_bundle import same
 from tests.bundles.test_bundle_damage import forged
@@ -97,12 +97,12 @@ def test_what_is_no_result_is_refused(thing, tmp_path):
 
 
 def test_a_proof_with_a_certificate_says_how_it_is_kept(tmp_path):
-    proof = prove_existence(breather_at_amplitude(Chain(3, alpha="0.3"), 1, "0.1"))
+    proof = prove_existence(symfpu.torus(Chain(3, alpha="0.3"), (1,), amplitudes={1: "0.1"}))
     with pytest.raises(InputError, match=r"its certificate is kept by .write\(path\), and symfpu verify opens it"):
         save(tmp_path / "proof", proof)
 
 
 def test_a_bundle_says_what_of_it_is_kept(tmp_path):
-    bundle = load(save(tmp_path / "breather", breather_at_amplitude(Chain(3, alpha="0.3"), 1, "0.1")))
+    bundle = load(save(tmp_path / "breather", symfpu.torus(Chain(3, alpha="0.3"), (1,), amplitudes={1: "0.1"})))
     with pytest.raises(InputError, match=r"pass what it holds, its \.result"):
         save(tmp_path / "again", bundle)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, breather_at_amplitude, fpu_trajectory, frequency_analysis, integrate, packet_state, plots, refine
+from symfpu import Chain, InputError, fpu_trajectory, frequency_analysis, integrate, packet_state, plots, refine
 from tests.tolerances import ACTION_OF_LINES, CHANNEL_LINE, FREQUENCY_OF_LINE
 
 PAIR = Chain(N=8, alpha="0.3")
@@ -120,7 +120,7 @@ def known_lines(torus, found):
 def test_what_an_orbit_is_too_short_to_tell_apart_is_in_every_error(N, law, energy, lengths):
     """2 omega_1 and omega_2 are a tenth to half a turn apart: one line in windows, up to 500 times further off than these said."""
     chain = Chain(N, **law)
-    exact = refine(symfpu.torus_at_energy(chain, (1, 2), energy, order=4))
+    exact = refine(symfpu.torus(chain, (1, 2), energy=energy, method="series", order=4))
     rates = np.abs(exact.harmonics @ np.array([float(w) for w in exact.frequencies]))
     slowest, off = 2 * np.pi / chain.frequencies()[0], []
     for turns in lengths:
@@ -137,7 +137,7 @@ def test_what_an_orbit_is_too_short_to_tell_apart_is_in_every_error(N, law, ener
 def test_a_slow_line_that_climbs_to_zero_has_the_error_of_a_constant():
     """2 omega_1 - omega_2 of mode 2, a tenth of a turn: it was a frequency of 1e-54, off by its whole, with the error 1e-14."""
     chain = Chain(8, beta="0.5")
-    exact = refine(symfpu.torus_at_energy(chain, (1, 2), "0.05", order=4))
+    exact = refine(symfpu.torus(chain, (1, 2), energy="0.05", method="series", order=4))
     time = 20 * 2 * np.pi / chain.frequencies()[0]
     found = frequency_analysis(integrate(chain, *exact.state(), time, step=0.1, samples=2))
     first, second = map(float, exact.frequencies)
@@ -148,7 +148,7 @@ def test_a_slow_line_that_climbs_to_zero_has_the_error_of_a_constant():
 
 def test_a_breather_is_told_from_its_harmonics_at_any_length():
     """Its line in mode 2 is 2 omega_1 to rounding, not a frequency next to it."""
-    breather = breather_at_amplitude(Chain(16, alpha="0.3"), 1, "0.5")
+    breather = symfpu.torus(Chain(16, alpha="0.3"), (1,), amplitudes={1: "0.5"})
     found = frequency_analysis(integrate(breather.chain, *breather.state(), 200, step=0.1, samples=2))
     assert (found.seeds, found.unresolved) == ((1,), 0)
     assert found.errors[0] < CHANNEL_LINE
@@ -172,7 +172,7 @@ def test_lines_within_four_turns_of_each_other_are_told_and_named():
 @pytest.mark.parametrize(("scheme", "step"), [("yoshida4", 0.1), ("aba864", 0.2), ("kahan_li8", 0.4)])
 def test_errors_are_not_below_the_shift_of_the_scheme(scheme, step):
     """A step of the scheme shifts frequencies by more than two windows differ; the error says so, and not much more."""
-    breather = breather_at_amplitude(Chain(N=4, beta=1), 2, "0.3")
+    breather = symfpu.torus(Chain(N=4, beta=1), (2,), amplitudes={2: "0.3"})
     found = frequency_analysis(integrate(breather.chain, *breather.state(), 1000, step=step, scheme=scheme))
     real = abs(found.frequencies[0] - float(breather.frequency))
     assert real > FREQUENCY_OF_LINE
@@ -184,7 +184,7 @@ def test_errors_are_not_below_the_shift_of_the_scheme(scheme, step):
 def test_a_line_slower_than_a_turn_is_no_constant():
     """omega_2 - 2 omega_1 is 0.36 turns in mode 2: it was said to be 0 to 1e-15, twice; a chain whose V is even has no constant."""
     chain = Chain(8, beta=1)
-    found = replace(refine(symfpu.torus_at_energy(chain, (1, 2), "0.05", order=4)), phases={1: 0.3, 2: 1.1})
+    found = replace(refine(symfpu.torus(chain, (1, 2), energy="0.05", method="series", order=4)), phases={1: 0.3, 2: 1.1})
     exact = abs(float(found.frequencies[1] - 2 * found.frequencies[0]))
     analysis = frequency_analysis(integrate(chain, *found.state(), 150, step=0.1, scheme="kahan_li8", samples=4))
     turn = 2 * np.pi / 150
@@ -198,7 +198,7 @@ def test_a_line_slower_than_a_turn_is_no_constant():
 def test_a_constant_is_one():
     """Of V that is not even, over many turns of the slowest sum."""
     chain = Chain(6, alpha="0.3")
-    found = refine(symfpu.torus_at_energy(chain, (1, 2), "0.01", order=4))
+    found = refine(symfpu.torus(chain, (1, 2), energy="0.01", method="series", order=4))
     analysis = frequency_analysis(integrate(chain, *found.state(), 3000, step=0.1, scheme="kahan_li8", samples=4))
     constants = [line for line in analysis.lines if line.frequency == 0]
     assert [line.mode for line in constants] == [2, 4]
@@ -217,7 +217,7 @@ TORI = {
 def test_errors_hold_for_lines_of_all_strengths_at_all_times():
     ratios = []
     for (chain, amplitudes), T in itertools.product(TORI.values(), (250, 1000, 5000)):
-        found = refine(symfpu.torus_at_amplitudes(chain, amplitudes, order=4))
+        found = refine(symfpu.torus(chain, tuple(amplitudes), amplitudes=amplitudes, method="series", order=4))
         angles = {q: 0.3 + 0.8 * i for i, q in enumerate(found.seeds)}
         start = replace(found, phases=angles).state()
         for scheme, step in (("kahan_li8", 0.2), ("yoshida4", 0.1), ("aba864_modes", 0.4)):
@@ -297,7 +297,7 @@ def test_the_picture_takes_an_analysis_only():
 
 def test_a_mode_at_rest_has_no_lines():
     """Seed 4 of five bonds, beta: modes 1 and 3 hold nothing but rounding, which has lines of its own."""
-    breather = breather_at_amplitude(Chain(N=5, beta=1), 4, "0.7")
+    breather = symfpu.torus(Chain(N=5, beta=1), (4,), amplitudes={4: "0.7"})
     found = frequency_analysis(integrate(breather.chain, *breather.state(), 400, step=0.1))
     assert {line.mode for line in found.lines} == {2, 4}
     assert found.seeds == (4,)

@@ -2,7 +2,8 @@
 
 from functools import cache
 
-from symfpu import Chain, lindstedt, periodic_orbit, refine, resum, solve_amplitudes, unfold
+import symfpu
+from symfpu import Chain, lindstedt, refine, resum, solve_amplitudes, unfold
 
 CHAIN = Chain(8, alpha="0.3", beta="0.1")
 PHASES = {1: 0.4, 2: -1.3}
@@ -18,7 +19,7 @@ def series_torus():
 
 @cache
 def breather():
-    return periodic_orbit(CHAIN, SEED, FREQUENCY)
+    return symfpu.torus(CHAIN, (SEED,), frequencies=(FREQUENCY,))
 
 
 @cache

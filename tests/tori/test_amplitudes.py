@@ -141,7 +141,7 @@ def test_a_harmonic_mode_leaves_the_amplitude_undetermined():
 def test_amplitudes_come_back_where_the_lowest_force_is_no_square_or_cube(potential, orders, seeds):
     """A force r^5 shifts frequencies with A^4, r^4 only by pairs, with A^6: orders between do not, and are none."""
     wanted = {q: 0.3 / n for n, q in enumerate(seeds, 1)}
-    made = symfpu.torus_at_amplitudes(Chain(8, potential=potential), wanted, order=6)
+    made = symfpu.torus(Chain(8, potential=potential), tuple(wanted), amplitudes=wanted, method="series", order=6)
     torus = solve_amplitudes(lindstedt(made.chain, seeds, tuple(made.frequencies), 6))
     assert torus.amplitudes == pytest.approx(wanted, rel=AMPLITUDE)
     assert list(torus.origin.history) == orders

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from symfpu import Chain, NoTorusAtEnergy, SymfpuError, torus_at_amplitudes, torus_at_energy
+import symfpu
+from symfpu import Chain, Energy, InputError, NoTorusAtEnergy, SymfpuError
 from symfpu.tori import at_energy
-from tests.refusals import each, refused
+from tests.refusals import each
 from tests.tolerances import FIXED_ENERGY, LAST_DIGIT, RELATIVE_SHIFT, TEN_ROUNDINGS
 
 CASES = [
@@ -26,11 +27,11 @@ def measured(torus, harmonic):
 @pytest.mark.parametrize(("chain", "seeds", "energy", "order"), CASES, ids=str)
 def test_energy_and_mode_energies_are_met(chain, seeds, energy, order, harmonic):
     weights = {q: i + 1 for i, q in enumerate(seeds)}
-    torus = torus_at_energy(chain, seeds, energy, harmonic=harmonic, order=order, energy_ratio=weights)
+    torus = symfpu.torus(chain, seeds, energy=symfpu.Energy(energy, harmonic=harmonic, energy_ratio=weights), method="series", order=order)
     assert measured(torus, harmonic) == pytest.approx(float(energy), rel=FIXED_ENERGY)
     modes = torus.average_spectrum()[np.array(seeds) - 1]
     assert modes / modes.sum() == pytest.approx(np.array(list(weights.values())) / sum(weights.values()), rel=FIXED_ENERGY)
-    again = torus_at_amplitudes(chain, torus.amplitudes, order)
+    again = symfpu.torus(chain, tuple(torus.amplitudes), amplitudes=torus.amplitudes, method="series", order=order)
     assert [float(w) for w in again.frequencies] == pytest.approx([float(w) for w in torus.frequencies], rel=TEN_ROUNDINGS)
     assert again.warnings == torus.warnings
 
@@ -39,18 +40,18 @@ def test_energy_and_mode_energies_are_met(chain, seeds, energy, order, harmonic)
 @pytest.mark.parametrize(("chain", "seeds", "energy", "order"), CASES, ids=str)
 def test_energy_and_amplitude_ratio_are_met(chain, seeds, energy, order, harmonic):
     ratio = {q: 1 / (i + 1) for i, q in enumerate(seeds)}
-    torus = torus_at_energy(chain, seeds, energy, harmonic=harmonic, order=order, amplitude_ratio=ratio)
+    torus = symfpu.torus(chain, seeds, energy=symfpu.Energy(energy, harmonic=harmonic, amplitude_ratio=ratio), method="series", order=order)
     assert measured(torus, harmonic) == pytest.approx(float(energy), rel=FIXED_ENERGY)
     for i, q in enumerate(seeds):
         assert torus.amplitudes[q] / torus.amplitudes[seeds[0]] == pytest.approx(1 / (i + 1), rel=LAST_DIGIT)
 
 
 @pytest.mark.long
-def test_equal_mode_energies_are_the_default_and_phases_count():
-    torus = torus_at_energy(*CASES[0][:3], harmonic=True, order=6, phases={1: 1, 2: 2})
+def test_equal_mode_energies_are_the_default():
+    chain, seeds, energy, _ = CASES[0]
+    torus = symfpu.torus(chain, seeds, energy=symfpu.Energy(energy, harmonic=True), method="series", order=6)
     modes = torus.average_spectrum()[:2]
     assert modes[0] == pytest.approx(modes[1], rel=FIXED_ENERGY)
-    assert torus.phases == {1: 1.0, 2: 2.0}
     assert measured(torus, True) == pytest.approx(0.01, rel=FIXED_ENERGY)
 
 
@@ -60,10 +61,10 @@ def test_many_digits(harmonic):
     import mpmath
 
     chain = Chain(8, beta="0.3")
-    torus = torus_at_energy(chain, (1, 2), "0.1", harmonic=harmonic, order=3, digits=30)
+    torus = symfpu.torus(chain, (1, 2), energy=symfpu.Energy("0.1", harmonic=harmonic), method="series", order=3, digits=30)
     with mpmath.workdps(40):
         assert abs(measured(torus, harmonic) / mpmath.mpf("0.1") - 1) < mpmath.mpf(10) ** -30
-    doubles = torus_at_energy(chain, (1, 2), "0.1", harmonic=harmonic, order=3)
+    doubles = symfpu.torus(chain, (1, 2), energy=symfpu.Energy("0.1", harmonic=harmonic), method="series", order=3)
     assert [float(a) for a in torus.amplitudes.values()] == pytest.approx(list(doubles.amplitudes.values()), rel=FIXED_ENERGY)
 
 
@@ -79,29 +80,38 @@ def test_many_digits(harmonic):
 )
 def test_unreachable_energies_say_how_far_the_family_goes(chain, seeds, energy):
     with pytest.raises(NoTorusAtEnergy) as caught:
-        torus_at_energy(chain, seeds, energy, harmonic=False, order=2)
+        symfpu.torus(chain, seeds, energy=energy, method="series", order=2)
     error = caught.value
     assert isinstance(error, SymfpuError)
     assert 0 < error.reached < error.energy == float(energy)
     assert error.reason in str(error)
     assert "\n" not in str(error)
-    last = torus_at_amplitudes(chain, error.amplitudes, 2)
+    last = symfpu.torus(chain, tuple(error.amplitudes), amplitudes=error.amplitudes, method="series", order=2)
     assert float(last.energy()) == pytest.approx(error.reached, rel=RELATIVE_SHIFT)
     assert last.residual(64) < 1.1 * at_energy.LARGEST_RESIDUAL
 
 
 @each(
-    harmonic=[1],
-    energy=[0, "-1", float("inf"), "1e-50"],
-    seeds=[(1, 1)],
-    energy_ratio=[{1: 1}, {1: 1, 2: 0}],
-    amplitude_ratio=[{1: 1, 3: 1}, (1, 2)],
-    frequency_order=[7],
+    energy=[0, "-1", float("inf"), "1e-60", [1]],
+    seeds=[(1, 1), 1],
+    order=[1, 2.0],
 )
 def test_bad_arguments_are_refused_by_name(name, value):
-    refused(torus_at_energy, name, value, chain=Chain(8, alpha="0.3"), seeds=(1, 2), energy="0.01", harmonic=False, order=4)
+    given = {"seeds": (1, 2), "energy": "0.01", "method": "series", "order": 4}
+    with pytest.raises(InputError) as caught:
+        symfpu.torus(Chain(8, alpha="0.3"), **given | {name: value})
+    assert caught.value.argument == name
 
 
-def test_two_ratios_are_refused():
-    equal = {1: 1, 2: 1}
-    refused(torus_at_energy, "energy_ratio", equal, chain=Chain(8, alpha="0.3"), seeds=(1, 2), energy=1, order=4, amplitude_ratio=equal)
+@pytest.mark.parametrize(("name", "value"), [("energy_ratio", {1: 1}), ("energy_ratio", {1: 1, 2: 0}), ("amplitude_ratio", (1, 2))])
+def test_bad_ratios_are_refused_by_name(name, value):
+    with pytest.raises(InputError, match=rf"^{name}"):
+        symfpu.torus(Chain(8, alpha="0.3"), (1, 2), energy=Energy(1, **{name: value}), method="series", order=4)
+
+
+@each(value=[0, "one"], harmonic=[1, "yes"], energy_ratio=[{1: 1}])
+def test_bad_energies_are_refused_by_name(name, value):
+    given = {"value": "0.01", "amplitude_ratio": {1: 1, 2: 1} if name == "energy_ratio" else None}
+    with pytest.raises(InputError) as caught:
+        Energy(**given | {name: value})
+    assert caught.value.argument == ("energy" if name == "value" else name)

@@ -144,7 +144,7 @@ def test_sums_of_the_frequencies_of_opposite_waves_are_those_of_the_standing_wav
 def test_waves_of_long_rings_keep_their_digits():
     """Neighbours move nearly alike: forces by differences of positions would be off by 1e-11 of themselves."""
     chain = ring(1024, beta=1)
-    wave = symfpu.breather_at_energy(chain, 1, "1e-5")
+    wave = symfpu.torus(chain, (1,), energy="1e-5")
     assert wave.residual() < ROUNDING
     assert not wave.warnings
     Q = wave.Q(0.3)
@@ -156,7 +156,7 @@ def test_waves_of_long_rings_keep_their_digits():
 
 def test_beyond_the_wall_of_a_potential_the_residual_is_infinite():
     chain = Chain(5, potential="lj:12,6", ends="periodic")
-    wave = symfpu.breather_at_amplitude(chain, 1, "0.01")
+    wave = symfpu.torus(chain, (1,), amplitudes={1: "0.01"})
     far = replace(wave, cosines=500 * wave.cosines)
     assert far.residual() == np.inf
 

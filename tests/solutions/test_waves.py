@@ -5,13 +5,9 @@ import pytest
 
 import symfpu
 from symfpu import (
-    Chain,
     InputError,
     NoRealAmplitude,
-    breather_at_amplitude,
-    breather_at_energy,
     lindstedt,
-    periodic_orbit,
     refine,
     solve_amplitudes,
 )
@@ -35,19 +31,19 @@ ALL = [*CASES, *(pytest.param(*case, marks=pytest.mark.long) for case in LONG)]
 @pytest.mark.parametrize(("N", "q", "A", "law"), ALL)
 def test_amplitude_frequency_and_energy_find_the_same_wave(N, q, A, law):
     chain = ring(N, **law)
-    found = breather_at_amplitude(chain, q, A)
+    found = symfpu.torus(chain, (q,), amplitudes={q: A})
     assert found.residual() < PROMISED_RESIDUAL
     assert np.isclose(found.amplitude, float(A), rtol=CONVERGED_DIGITS)
-    by_frequency = periodic_orbit(chain, q, found.frequency)
+    by_frequency = symfpu.torus(chain, (q,), frequencies=(found.frequency,))
     assert by_frequency.frequency == found.frequency
     assert np.isclose(by_frequency.amplitude, abs(float(A)), rtol=CONVERGED_DIGITS)
-    by_energy = breather_at_energy(chain, q, repr(float(found.energy())))
+    by_energy = symfpu.torus(chain, (q,), energy=repr(float(found.energy())))
     assert np.isclose(float(by_energy.frequency), float(found.frequency), rtol=CONVERGED_DIGITS)
 
 
 @pytest.mark.parametrize(("N", "q", "A", "law"), CASES)
 def test_it_goes_on_by_one_site_in_a_part_of_its_period(N, q, A, law):
-    found = breather_at_amplitude(ring(N, **law), q, A)
+    found = symfpu.torus(ring(N, **law), (q,), amplitudes={q: A})
     delay = 2 * np.pi * q / N / float(found.frequency)
     assert np.abs(np.roll(found.x(0.7 + delay), -1) - found.x(0.7)).max() < PROMISED_RESIDUAL
 
@@ -56,40 +52,36 @@ def test_it_is_the_refined_torus_of_its_series():
     chain = ring(9, alpha="0.3")
     series = lindstedt(chain, (2,), ("1.2859",), 6)
     one = refine(solve_amplitudes(series))
-    other = periodic_orbit(chain, 2, "1.2859")
+    other = symfpu.torus(chain, (2,), frequencies=("1.2859",))
     assert np.isclose(one.amplitude, other.amplitude, rtol=CONVERGED_DIGITS)
     assert np.allclose(one.x(2.0), other.x(2.0), atol=PROMISED_RESIDUAL)
 
 
 def test_near_a_guess_it_is_the_same():
     chain = ring(8, alpha="0.3", beta="0.2")
-    guess = breather_at_amplitude(chain, -1, "0.4")
-    energy = breather_at_energy(chain, -1, "0.1")
+    guess = symfpu.torus(chain, (-1,), amplitudes={-1: "0.4"})
+    energy = symfpu.torus(chain, (-1,), energy="0.1")
     for found, near in (
-        (breather_at_energy(chain, -1, "0.1", guess=guess), energy),
-        (periodic_orbit(chain, -1, energy.frequency, guess), energy),
-        (breather_at_amplitude(chain, -1, energy.amplitude, guess), energy),
-        (breather_at_energy(chain, -1, energy.average_spectrum().sum(), harmonic=True), energy),
+        (refine(guess, energy="0.1"), energy),
+        (refine(guess, frequencies=energy.frequencies), energy),
+        (refine(guess, amplitudes=energy.amplitudes), energy),
+        (symfpu.torus(chain, (-1,), energy=symfpu.Energy(energy.average_spectrum().sum(), harmonic=True)), energy),
     ):
         assert np.isclose(found.amplitude, near.amplitude, rtol=CONVERGED_DIGITS)
 
 
 def test_arguments_are_checked():
     beta = ring(8, beta=1)
-    for door, name, value in (
-        (breather_at_amplitude, "amplitude", 0),
-        (periodic_orbit, "frequency", -1),
-        (breather_at_energy, "energy", 0),
+    for name, value in (
+        ("amplitudes", {1: 0}),
+        ("frequencies", (-1,)),
+        ("energy", 0),
     ):
-        with pytest.raises(InputError, match=name):
-            door(beta, 1, value)
+        with pytest.raises(InputError, match=f"^{name}"):
+            symfpu.torus(beta, (1,), **{name: value})
     with pytest.raises(InputError, match="seeds"):
-        breather_at_amplitude(beta, 0, 1)
-    other = breather_at_amplitude(Chain(8, beta=1), 1, "0.1")
-    for guess in (other, breather_at_amplitude(beta, 2, "0.1"), [[0.0], [1.0]]):
-        with pytest.raises(InputError, match=r"^guess = .*a wave of seed 1 of the same ring"):
-            breather_at_amplitude(beta, 1, 1, guess)
+        symfpu.torus(beta, (0,), amplitudes={0: 1})
     with pytest.raises(NoRealAmplitude):
-        periodic_orbit(beta, 1, "0.7")
+        symfpu.torus(beta, (1,), frequencies=("0.7",))
     with pytest.raises(symfpu.UndeterminedAmplitudes):
-        periodic_orbit(ring(8, alpha="0.3"), 4, "2.1")
+        symfpu.torus(ring(8, alpha="0.3"), (4,), frequencies=("2.1",))

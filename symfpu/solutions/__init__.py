@@ -1,0 +1,1 @@
+"""The door to tori: one function for every kind of them."""
