@@ -26,7 +26,7 @@ from symfpu.numbers.typed import exact
 from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.guesses import frequency_shifts
 from symfpu.refinement.prescribed import Prescribed
-from symfpu.refinement.refined_torus import Newton, NoTorus
+from symfpu.refinement.refined_torus import USEFUL, Newton, NoTorus
 from symfpu.refinement.tori import refined_in_doubles
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
@@ -154,7 +154,8 @@ def from_rest(
         way.append((part, found))
         gone, step = part, 2 * (part - gone)
         tell("way from rest", gone)
-    return way[-1][1]
+    _, last = way[-1]
+    return _require_solved(last)
 
 
 def _guess(way: list[tuple[float, Torus[Newton]]], part: float) -> Torus:
@@ -217,6 +218,16 @@ def _require_good(guess: Torus) -> None:
     left = guess.residual()
     if not left <= LARGEST_RESIDUAL:
         raise NoTorus("the guess is no torus", guess, left, SMALLER)
+
+
+def _require_solved(torus: Torus[Newton]) -> Torus[Newton]:
+    """NoTorus for one that does not solve the equations of motion to USEFUL."""
+    left = torus.residual()
+    if left <= USEFUL:
+        return torus
+    reason = "; ".join(torus.warnings) or "the equations of motion are not solved"
+    advice = "ask for less, or take refine(error.iterate, most_harmonics=...)"
+    raise NoTorus(reason, torus, left, advice)
 
 
 def _require_near(

@@ -71,8 +71,15 @@ def test_ratios_are_met_and_mode_energies_are_equal_by_default(harmonic):
 
 
 def test_opposite_waves_of_one_energy_have_one_amplitude():
-    found = symfpu.torus(ring(8, alpha="0.3"), (1, -1), energy="0.01")
+    found = symfpu.torus(ring(7, alpha="0.3"), (1, -1), energy="0.01")
     assert found.amplitudes[1] == pytest.approx(found.amplitudes[-1], rel=CONVERGED_DIGITS)
+    assert found.residual() < PROMISED_RESIDUAL
+
+
+def test_waves_that_drive_another_in_resonance_are_no_torus():
+    """Umklapp, 4 - 3 (-1) = 7 = -1 of a ring of 8: a residual of 5e-6 is left, which is no torus to rounding."""
+    with pytest.raises(NoTorus, match="Umklapp"):
+        symfpu.torus(ring(8, alpha="0.3"), (1, -1), energy="0.01")
 
 
 def test_every_seed_has_its_own_frequency_in_any_order():
@@ -113,6 +120,15 @@ def test_what_is_too_much_says_how_far_it_was_followed():
     with pytest.raises(NoTorus, match=r"followed from rest to H = .*ask for less, such as energy=") as failure:
         symfpu.torus(Chain(4, beta=-1), (1, 3), energy="5")
     assert failure.value.iterate.seeds == (1, 3)
+
+
+def test_what_is_not_solved_to_rounding_is_an_error(monkeypatch):
+    """As where no more harmonics fit; the iterate is kept."""
+    chain, seeds, energy = CASES["beta, wrapped"]
+    monkeypatch.setattr(from_rest, "USEFUL", 0.0)
+    with pytest.raises(NoTorus, match="most_harmonics") as failure:
+        symfpu.torus(chain, seeds, energy=energy)
+    assert failure.value.iterate.residual() == failure.value.residual < PROMISED_RESIDUAL
 
 
 @pytest.mark.long
