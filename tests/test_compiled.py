@@ -27,6 +27,7 @@ print(*map(repr, integrate(Chain(N=4, alpha="0.3", beta="0.2"), [0.1] * 3, [0.2]
 
 EVERYTHING = """
 import numpy as np
+import symfpu
 from symfpu import Chain, alignment_indices, floquet, integrate, lindstedt, prove_propagation, solve_amplitudes
 
 chain, beta = Chain(6, alpha="0.3", beta="0.2"), Chain(6, beta="0.3")

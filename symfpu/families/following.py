@@ -28,6 +28,7 @@ from symfpu.families.folder import BEGINNING, Kept, Plan, checked_family
 from symfpu.families.members import Event, Level, Member, member, series_member
 from symfpu.families.normal_events import RESONANCE_LENGTH, NormalEvent
 from symfpu.files.progress import Progress, unheard
+from symfpu.normal.resonances import resonance_length_of
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, integer
@@ -146,6 +147,8 @@ def family(
         length if normal else None,
     )
     plan = checked_family(chain, seeds, *arguments)
+    if normal:
+        resonance_length_of(length, plan.seeds, 0)
     tell = progress or unheard
 
     def of_member(label: str, _: float) -> None:

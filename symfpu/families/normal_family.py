@@ -19,6 +19,7 @@ from symfpu.frames.grid import Grid, Variable
 from symfpu.frames.tabled import Gridded
 from symfpu.normal.frequencies import frequencies_of
 from symfpu.normal.modes import NormalModes
+from symfpu.normal.resonances import resonance_length_of
 from symfpu.normal.torus import checked_modes, checked_solution
 from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
@@ -135,7 +136,7 @@ def normal_family(
     """
     checked_solution(solution)
     count = integer(members, "members", 2)
-    length = integer(resonance_length, "resonance_length", 0)
+    length = resonance_length_of(resonance_length, solution.seeds, 0)
     chosen = checked_modes(solution, modes)
     line = Line(solution, _end(solution, amplitudes), count)
     kept = KeptLine(

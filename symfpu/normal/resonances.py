@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 from symfpu.chain.chain import Chain
 from symfpu.normal.standing import coupled_groups
 from symfpu.numbers.public import public
+from symfpu.numbers.room import require_room
+from symfpu.numbers.typed import integer
 from symfpu.refinement.lattice import Ints, dilated
 from symfpu.tori.torus import Torus
 
@@ -37,6 +39,9 @@ KINDS = (PARAMETRIC, SUM, DIFFERENCE, OWN)
 LOCKED = 1e-8  # distance up to which a hyperbolic direction is locked to a resonance
 LONGEST = 24  # sum |nu_i| up to which it is looked for
 MOST = 300_000  # harmonics that are looked through
+NUMBERS_A_HARMONIC = (
+    4  # arrays of as many numbers as all harmonics have that are alive at once
+)
 
 
 @public
@@ -175,13 +180,25 @@ def locked_resonances(
     return sorted(known, key=lambda r: (r.kind == DIFFERENCE, sum(map(abs, r.harmonic))))
 
 
+def resonance_length_of(value: object, seeds: tuple[int, ...], least: int) -> int:
+    """A largest sum |nu_i| whose harmonics fit into memory; InputError for any other."""
+    length, s = integer(value, "resonance_length", least), len(seeds)
+
+    def needed(length: int) -> int:
+        return NUMBERS_A_HARMONIC * 8 * (s + 1) * _count(s, length)
+
+    require_room("resonance_length", length, needed)
+    return length
+
+
 def _longest(s: int) -> int:
     """Up to which sum |nu_i| all harmonics are not too many."""
+    return next(n for n in range(LONGEST, 0, -1) if _count(s, n) <= MOST)
 
-    def count(length: int) -> int:
-        return sum(2**k * comb(s, k) * comb(length, k) for k in range(s + 1))
 
-    return next(n for n in range(LONGEST, 0, -1) if count(n) <= MOST)
+def _count(s: int, length: int) -> int:
+    """How many nu of s numbers have sum |nu_i| <= length."""
+    return sum(2**k * comb(s, k) * comb(length, k) for k in range(s + 1))
 
 
 def _coupled(

@@ -18,7 +18,7 @@ from symfpu.normal.linearised import Linearised, Values
 from symfpu.normal.modes import NoNormalModes, NormalDivisor, NormalMode, NormalModes
 from symfpu.normal.names import Names
 from symfpu.normal.reduction import LEAST_OVERLAP, Reduced, continued, followed, reduced
-from symfpu.normal.resonances import OWN, ParametricResonance
+from symfpu.normal.resonances import OWN, ParametricResonance, resonance_length_of
 from symfpu.normal.torus import (
     LENGTH,
     Flows,
@@ -29,7 +29,6 @@ from symfpu.normal.torus import (
     second_order,
 )
 from symfpu.numbers.public import public
-from symfpu.numbers.typed import integer
 from symfpu.refinement.iterative_refinement import Failure
 from symfpu.refinement.lattice import Ints
 from symfpu.tori.torus import Torus
@@ -95,7 +94,7 @@ def normal_modes(
     """
     torus = checked_solution(solution)
     chosen = checked_modes(torus, modes)
-    length = integer(resonance_length, "resonance_length", 1)
+    length = resonance_length_of(resonance_length, torus.seeds, 1)
     search, tell = _Search(torus, length), progress or unheard
     found, missing = search.each(chosen, tell)
     named = modes is not None

@@ -168,6 +168,10 @@ REFUSED = {
     "an amplitude": (lambda: symfpu.torus(ALPHA, (1,), amplitudes={1: "1e400"}), "amplitude"),
     "a frequency": (lambda: symfpu.torus(ALPHA, (1,), frequencies=("1e400",)), "frequencies, omega_1.*1e-6 to 1e6"),
     "a breather of a long chain": (lambda: symfpu.torus(Chain(100_000, beta=1), (1,), energy="0.1"), "N = 100000.*take [1-9]"),
+    "resonances": (
+        lambda: symfpu.normal_modes(symfpu.torus(ALPHA, (1,), amplitudes={1: "0.1"}), resonance_length=2**31),
+        "resonance_length.*take [0-9]+ or less",
+    ),
     "a shift": (lambda: symfpu.frequency_shift(ALPHA, {1: 1e300}), "A_1.*up to 1e\\+25"),
     "a start": (lambda: integrate(ALPHA, [10**400] + [0] * 6, AT_REST, 1.0, step=0.1), "Q = "),
     "samples": (lambda: integrate(ALPHA, AT_REST + 0.1, AT_REST, 1e12, step=0.1, samples=10**12), "samples.*free memory"),
