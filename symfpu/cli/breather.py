@@ -9,7 +9,6 @@ from typing import Annotated, Any
 import typer
 
 from symfpu.breathers.floquet import floquet
-from symfpu.chain.chain import Chain
 from symfpu.cli.chains import (
     AlphaOption,
     BetaOption,
@@ -33,7 +32,6 @@ from symfpu.cli.terminal import (
 )
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
-from symfpu.refinement.tori import refine
 from symfpu.reports.solution import solution_record, solution_text
 from symfpu.saved.results import save
 from symfpu.solutions.torus import torus
@@ -75,19 +73,16 @@ def breather(
     one_of({"omega": omega, "amplitude": amplitude, "energy": energy})
     file = output_named(output)
     picture = picture_named(plot)
+    wish: dict[str, Any] = {
+        "frequencies": None if omega is None else (omega,),
+        "amplitudes": None if amplitude is None else {mode: amplitude},
+        "energy": energy,
+    }
     with progress_bar("Newton's method") as advance:
-        orbit: Torus
         with warnings.catch_warnings(record=True) as several:
             warnings.simplefilter("always", UserWarning)
-            orbit = _found(chain, mode, omega, amplitude, energy)
+            orbit: Torus = torus(chain, (mode,), **wish, digits=places, progress=advance)
         doubts = tuple(str(w.message) for w in several if w.category is UserWarning)
-        if places is not None:
-            given: dict[str, Any] = {
-                "frequencies": None if omega is None else {mode: omega},
-                "amplitudes": None if amplitude is None else {mode: amplitude},
-                "energy": energy,
-            }
-            orbit = refine(orbit, **given, digits=places, progress=advance)
         advance("multipliers" if multipliers else "energies", NO_FRACTION)
         stability = floquet(orbit) if multipliers else None
         if file:
@@ -102,14 +97,3 @@ def breather(
     if file:
         print(f"written: {file}")
     say_drawn(picture)
-
-
-def _found(
-    chain: Chain, seed: int, omega: str | None, amplitude: str | None, energy: str | None
-) -> Torus:
-    if omega is not None:
-        return torus(chain, (seed,), frequencies=(omega,))
-    if amplitude is not None:
-        return torus(chain, (seed,), amplitudes={seed: amplitude})
-    assert energy is not None
-    return torus(chain, (seed,), energy=energy)

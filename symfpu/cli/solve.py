@@ -132,7 +132,9 @@ def solve(
     ] = None,
     digits: Annotated[
         str | None,
-        typer.Option(help="Any number of digits, proved.  Default: doubles.", metavar="D"),
+        typer.Option(
+            help="Any number of digits, with a bound.  Default: doubles.", metavar="D"
+        ),
     ] = None,
     output: Annotated[
         str | None,
@@ -223,8 +225,10 @@ def _by_newton(
             )
         doubts = tuple(str(w.message) for w in several if w.category is UserWarning)
         if file:
+            verdict = verdict_of(found)
+            verdict["reasons"] += doubts
             command = shlex.join(["symfpu", *context.obj])
-            save(file, found, verdict=verdict_of(found), command=command)
+            save(file, found, verdict=verdict, command=command)
         draw(found.plot, picture)
     record = solution_record(found, warnings=doubts)
     if as_json:

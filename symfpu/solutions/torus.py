@@ -102,8 +102,8 @@ def torus(
     amplitudes : A_q by seed, the coefficient of cos(theta_q) in Q_q; not Q_q(0).
     energy : H, or an `Energy`: the harmonic one, a ratio of amplitudes or of mode energies. Without
         a ratio the averages of E_q of the seeds are equal.
-    start : Q_q(0) by seed of an orbit at rest, which is on the torus but for the modes that are no
-        seeds. With fixed ends.
+    start : Q_q(0) by seed, not 0, of an orbit at rest, which is on the torus but for the modes
+        that are no seeds. With fixed ends; `refine(guess, start=...)` takes 0, too.
     method : "newton", Newton's method on the equations of motion, near a short series or on the way
         from rest; "series", the truncated series of the paper, which only approximates them.
     order : of the series with method="series", a number or `Orders`. None: orders are added until

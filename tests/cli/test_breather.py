@@ -39,9 +39,12 @@ def test_by_amplitude_and_by_energy(capsys):
 
 
 @pytest.mark.long
-def test_an_energy_that_the_family_passes_twice_is_a_warning(capsys):
-    """N = 16, beta = 1: the energy turns at 0.8127."""
-    found = answer(capsys, *split("breather -N 16 --beta 1 --seed 1 --energy 0.79"))
+@pytest.mark.parametrize("verb", ["breather --seed 1", "solve --seeds 1"])
+def test_an_energy_that_the_family_passes_twice_is_a_warning(verb, capsys, tmp_path):
+    """N = 16, beta = 1: the energy turns at 0.8127. The file keeps it as the reason of its verdict."""
+    file = tmp_path / "breather.symfpu"
+    found = answer(capsys, *split(f"{verb} -N 16 --beta 1 --energy 0.79"), "-o", str(file))
+    assert symfpu.load(file).verdict["reasons"] == found["warnings"]
     assert [w.partition(":")[0] for w in found["warnings"]] == [
         "A = 4.83023 is the first orbit of this energy, the family from rest passes it again near A = 4.57684"
     ]
