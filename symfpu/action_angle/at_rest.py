@@ -77,7 +77,7 @@ class TwistAtRest(Tabled):
     definite_range: tuple[float, float]
 
     def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.chain.label
         seeds = ",".join(map(str, self.seeds))
         low, high = self.definite_range
         where = f"definite for beta/alpha^2 in ({low:.10g}, {high:.10g})"

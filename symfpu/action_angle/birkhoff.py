@@ -88,7 +88,7 @@ class BirkhoffForm(Tabled):
     coefficients: Mapping[Exponents, Any]
 
     def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.chain.label
         listed = ",".join(map(str, self.seeds))
         count = f"degree {self.degree} in the actions, {counted(len(self.coefficients), 'term')}"
         return f"BirkhoffForm({chain}, seeds={listed}, {count})"

@@ -85,7 +85,7 @@ class ForetoldIndices(Shown, Gridded):
     normal: str
 
     def __repr__(self) -> str:
-        chain = repr(self.torus.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.torus.chain.label
         seeds = ",".join(map(str, self.torus.seeds))
         found = ", ".join(f"{slope.value:.2f}" for slope in self.slopes())
         due = ", ".join(map(str, self.asymptotic_slopes.values()))

@@ -57,7 +57,7 @@ class Twist(Gridded):
     digits: int | None = None
 
     def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.chain.label
         seeds = ",".join(map(str, self.seeds))
         smallest = text(self.smallest_eigenvalue, SHOWN_DIGITS)
         determinant = text(self.isoenergetic_determinant, SHOWN_DIGITS)

@@ -88,7 +88,7 @@ class Floquet(Shown, Gridded):
     trivial_error: float
 
     def __repr__(self) -> str:
-        chain = repr(self.orbit.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.orbit.chain.label
         which = f"seed {self.orbit.seed}, omega={decimal(self.orbit.frequency)}"
         largest = f"largest |multiplier| {self.largest:.12g}"
         quality = f"symplecticity error {self.symplecticity:.1g}"

@@ -135,7 +135,7 @@ class ExistenceProof(Tabled):
         return "travelling wave" if self.chain.periodic else "periodic orbit"
 
     def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.chain.label
         found = f"a {self.kind} within {above(self.radius, 2)} of the computed one"
         only = f"the only one within {below(self.unique, 2)}"
         case = f"{chain}, seed {self.seed}, {self.condition}"

@@ -136,7 +136,7 @@ def torus_text(
     chain: Chain, seeds: tuple[int, ...], frequencies: tuple[Fraction, ...]
 ) -> str:
     """The chain and the frequencies in words."""
-    name = repr(chain).removeprefix("Chain(").removesuffix(")")
+    name = chain.label
     pairs = zip(seeds, frequencies, strict=True)
     return ", ".join([name, *(f"omega_{q}={float(w):.10g}" for q, w in pairs)])
 

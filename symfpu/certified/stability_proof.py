@@ -120,7 +120,7 @@ class StabilityProof(Tabled):
 
     def __repr__(self) -> str:
         proof = self.existence
-        chain = repr(proof.chain).removeprefix("Chain(").removesuffix(")")
+        chain = proof.chain.label
         case = f"{chain}, seed {proof.seed}, {proof.condition}"
         return f"StabilityProof({case}: {self._found()})"
 

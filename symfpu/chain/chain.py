@@ -113,9 +113,18 @@ class Chain:
             raise InputError("N", "N", "a number where ends='periodic'", advice)
 
     def __repr__(self) -> str:
+        return f"Chain({self.label})"
+
+    @property
+    def label(self) -> str:
+        """The chain as it is typed between the parentheses of `Chain(...)`.
+
+        >>> Chain(N=8, alpha="0.3").label
+        'N=8, alpha=0.3'
+        """
         length = "'N'" if self.symbolic else self.N
         ends = ", ends='periodic'" if self.periodic else ""
-        return f"Chain(N={length}, {self._law_text()}{ends})"
+        return f"N={length}, {self._law_text()}{ends}"
 
     def _law_text(self) -> str:
         """The law of its bonds as an argument."""

@@ -118,7 +118,7 @@ class AlignmentIndices(Shown, Gridded):
         return self.dimension().verdict
 
     def __repr__(self) -> str:
-        model = repr(self.chain)[6:-1]
+        model = self.chain.label
         dimension = self.dimension()
         verdict = dimension.verdict
         if verdict == "undecided" and dimension.supported is not None:

@@ -108,7 +108,7 @@ class Orbit(Shown, Gridded):
     seconds: float = field(repr=False, default=0.0)
 
     def __repr__(self) -> str:
-        model = repr(self.chain)[6:-1]
+        model = self.chain.label
         orbits = math.prod(self.Q.shape[1:-1])
         many = f"{orbits} orbits, " if self.Q.ndim > 2 else ""
         end = f"{many}T={self.times[-1]:.10g}"

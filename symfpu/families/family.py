@@ -95,7 +95,7 @@ class Family(Shown, Gridded):
     normal_events: tuple[NormalEvent, ...] = ()
 
     def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.chain.label
         seeds = ",".join(map(str, self.seeds))
         doubtful = sum(m.verdict != "torus" for m in self.members)
         doubts = f", {doubtful} of them doubtful" if doubtful else ""

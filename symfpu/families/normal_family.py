@@ -49,8 +49,7 @@ class NormalFamily(Shown, Gridded):
     events: tuple[NormalEvent, ...]
 
     def __repr__(self) -> str:
-        chain = repr(self.members[0].torus.chain)
-        chain = chain.removeprefix("Chain(").removesuffix(")")
+        chain = self.members[0].torus.chain.label
         first, last = (self._amplitudes(found) for found in self.members[:: self._span])
         line = ", ".join(f"A_{q}={a:.6g} .. {last[q]:.6g}" for q, a in first.items())
         events = "; ".join(map(repr, self.events)) or "no events"

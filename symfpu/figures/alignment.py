@@ -24,7 +24,7 @@ ABOVE, TOP = (
 
 def draw_alignment(found: AlignmentIndices, folder: Path, stem: str = "gali") -> list[Path]:
     """Both pictures as PNG and PDF; returns the paths."""
-    chain = repr(found.chain)[6:-1]
+    chain = found.chain.label
     verdict = found.dimension().verdict
     indices = partial(alignment, found)
     exponent = partial(lyapunov, found)

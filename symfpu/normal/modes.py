@@ -206,7 +206,7 @@ class NormalModes(Shown, Gridded):
 
     def __repr__(self) -> str:
         torus = self.torus
-        chain = repr(torus.chain).removeprefix("Chain(").removesuffix(")")
+        chain = torus.chain.label
         pairs = zip(torus.seeds, torus.frequencies, strict=True)
         omega = "".join(f", omega_{q}={float(w):.10g}" for q, w in pairs)
         sigma = "".join(f", sigma_{mode.mode}={mode.text}" for mode in self.modes)

@@ -78,7 +78,7 @@ class NormalFrequencySeries(Tabled):
     smallest_divisors: tuple[SmallDivisor, ...] = field(repr=False)
 
     def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.chain.label
         listed = ",".join(map(str, self.seeds))
         count = sum(map(len, self.coefficients))
         found = (

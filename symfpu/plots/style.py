@@ -98,8 +98,8 @@ def subject(
     >>> subject(Chain(16, alpha="0.33"), (1, 2), 0.0234453)
     'N=16, alpha=0.33, seeds 1, 2, H=0.0234453'
     """
-    words = chain if isinstance(chain, str) else repr(chain)
-    parts = [words.removeprefix("Chain(").removesuffix(")")] if words else []
+    words = chain if isinstance(chain, str) else chain.label
+    parts = [words] if words else []
     if seeds:
         parts.append(f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}")
     if energy is not None:

@@ -100,10 +100,6 @@ def _usual(result: Any) -> Usual:
     raise InputError("result", type(result).__name__, allowed, "see symfpu.plots")
 
 
-def _model(chain: Any) -> str:
-    return repr(chain).removeprefix("Chain(").removesuffix(")")
-
-
 def _number(value: Any, digits: int | None = None) -> str:
     written = text(value, digits or PLACES)
     return written if len(written) <= LONGEST else f"{written[:LONGEST]}..."
@@ -125,7 +121,7 @@ def _torus_verdict(result: Any) -> str:
 
 def _torus_rows(result: Any) -> Rows:
     digits = getattr(result, "digits", None)
-    yield "chain", _model(result.chain)
+    yield "chain", result.chain.label
     for q, omega in zip(result.seeds, result.frequencies, strict=True):
         size = _number(result.amplitudes[q], digits)
         yield f"seed {q}", f"\N{GREEK SMALL LETTER OMEGA} = {_frequency(omega)}, A = {size}"
@@ -138,7 +134,7 @@ def _series_verdict(series: LindstedtSeries) -> str:
 
 
 def _series_rows(series: LindstedtSeries) -> Rows:
-    yield "chain", _model(series.chain)
+    yield "chain", series.chain.label
     yield "seeds", _listed(series.seeds)
     if series.frequencies is not None:
         yield "frequencies", _listed(map(_frequency, series.frequencies))
@@ -168,7 +164,7 @@ def _assessment_rows(found: Assessment) -> Rows:
 
 
 def _orbit_rows(orbit: Orbit) -> Rows:
-    yield "chain", _model(orbit.chain)
+    yield "chain", orbit.chain.label
     yield "to t", f"{orbit.times[-1]:.10g}, {len(orbit.times)} samples"
     yield "scheme", f"{orbit.scheme.name}, step {abs(orbit.step):.6g}"
     energies = orbit.energies[0].reshape(-1)
@@ -176,7 +172,7 @@ def _orbit_rows(orbit: Orbit) -> Rows:
 
 
 def _index_rows(found: AlignmentIndices) -> Rows:
-    yield "chain", _model(found.chain)
+    yield "chain", found.chain.label
     yield "to t", f"{found.times[-1]:.10g}"
     for slope in found.slopes():
         yield f"slope of G_{slope.k}", f"{slope.value:z.2f} \u00b1 {slope.error:.2f}"
@@ -185,7 +181,7 @@ def _index_rows(found: AlignmentIndices) -> Rows:
 
 
 def _foretold_rows(found: ForetoldIndices) -> Rows:
-    yield "chain", _model(found.torus.chain)
+    yield "chain", found.torus.chain.label
     yield "seeds", _listed(found.torus.seeds)
     for k, time in found.settling().items():
         slope = found.asymptotic_slopes[k]
@@ -194,7 +190,7 @@ def _foretold_rows(found: ForetoldIndices) -> Rows:
 
 
 def _floquet_rows(found: Floquet) -> Rows:
-    yield "chain", _model(found.orbit.chain)
+    yield "chain", found.orbit.chain.label
     yield "seed", str(found.orbit.seed)
     yield "largest |multiplier|", _number(found.largest)
     for kind, count in found.instabilities.items():
@@ -202,7 +198,7 @@ def _floquet_rows(found: Floquet) -> Rows:
 
 
 def _normal_rows(found: NormalModes) -> Rows:
-    yield "chain", _model(found.torus.chain)
+    yield "chain", found.torus.chain.label
     yield "seeds", _listed(found.torus.seeds)
     for mode in found.modes[:MOST_MODES]:
         yield f"\N{GREEK SMALL LETTER SIGMA} of mode {mode.mode}", mode.text
@@ -213,7 +209,7 @@ def _normal_rows(found: NormalModes) -> Rows:
 
 def _normal_family_rows(found: NormalFamily) -> Rows:
     torus = found.members[0].torus
-    yield "chain", _model(torus.chain)
+    yield "chain", torus.chain.label
     yield "seeds", _listed(torus.seeds)
     yield "members", str(len(found.members))
     for event in found.events[:MOST_MODES]:
@@ -229,7 +225,7 @@ def _family_picture(found: Family, ax: Axes | None = None) -> Axes:
 
 def _family_rows(found: Family) -> Rows:
     energies = [m.energy for m in found.members]
-    yield "chain", _model(found.chain)
+    yield "chain", found.chain.label
     yield "seeds", _listed(found.seeds)
     yield "members", f"{len(found.members)}, H = {min(energies):.6g} .. {max(energies):.6g}"
     for kind in ("fold", "resonance", "stability"):
@@ -256,7 +252,7 @@ def _toda_rows(found: TodaInvariants) -> Rows:
 
 
 def _line_rows(found: FrequencyAnalysis) -> Rows:
-    yield "chain", _model(found.chain)
+    yield "chain", found.chain.label
     yield "to t", f"{found.T:.10g}"
     by_seed = zip(found.seeds, found.frequencies, found.errors, strict=True)
     for q, omega, error in by_seed:
@@ -277,7 +273,7 @@ def _atlas_rows(found: Atlas) -> Rows:
 
 
 def _map_rows(found: FrequencyMap) -> Rows:
-    yield "chain", _model(found.chain)
+    yield "chain", found.chain.label
     yield "packet", _listed(found.packet)
     yield "to t", f"{found.T:.10g}"
     by_energy = zip(found.energies, found.counts, found.drifts, strict=True)

@@ -98,7 +98,7 @@ def stay_text(proof: StayProof) -> str:
 
 
 def _which(proof: ResidualProof | StayProof) -> str:
-    name = repr(proof.chain).removeprefix("Chain(").removesuffix(")")
+    name = proof.chain.label
     seeds = ", ".join(map(str, proof.seeds))
     harmonics = f"{proof.harmonics} harmonics, {proof.digits} digits"
     return f"{name}, seeds {seeds}, {harmonics}"

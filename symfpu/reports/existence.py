@@ -45,7 +45,7 @@ def existence_record(proof: ExistenceProof) -> dict[str, Any]:
 
 def existence_text(proof: ExistenceProof) -> str:
     """The theorem, the intervals, and the bounds."""
-    chain = repr(proof.chain).removeprefix("Chain(").removesuffix(")")
+    chain = proof.chain.label
     given = (
         f"of this {proof.fixed}" if not proof.half_width else f"of each such {proof.fixed}"
     )

@@ -93,7 +93,7 @@ def _member_record(found: NormalModes, part: float) -> dict[str, Any]:
 
 def normal_family_text(found: NormalFamily) -> str:
     """A line of tori for a reader: a line a member, and the events."""
-    chain = repr(found.members[0].torus.chain).removeprefix("Chain(").removesuffix(")")
+    chain = found.members[0].torus.chain.label
     seeds = ",".join(map(str, found.members[0].torus.seeds))
     lines = [f"{chain}, seeds {seeds}: {len(found.members)} tori, {found.verdict}"]
     for one in found.members:
@@ -204,7 +204,7 @@ def _resonance(one: ParametricResonance) -> dict[str, Any]:
 
 def normal_text(found: NormalModes) -> str:
     """Verdict, a line a mode, and the nearest resonances."""
-    chain = repr(found.torus.chain).removeprefix("Chain(").removesuffix(")")
+    chain = found.torus.chain.label
     seeds = ",".join(map(str, found.torus.seeds))
     lines = [f"{chain}, seeds {seeds}: {found.verdict}"]
     chain_modes = found.torus.chain.mode_numbers

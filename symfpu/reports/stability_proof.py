@@ -46,7 +46,7 @@ def _exponent(one: ProvedExponent) -> dict[str, Any]:
 def stability_text(proof: StabilityProof) -> str:
     """The theorem, the smallest gaps or the growth, and the bounds."""
     orbit = proof.existence
-    chain = repr(orbit.chain).removeprefix("Chain(").removesuffix(")")
+    chain = orbit.chain.label
     word = "linearly stable" if proof.stable else "linearly unstable"
     given = f"omega = {decimal(orbit.frequency)}"
     if orbit.fixed != "frequency":

@@ -112,7 +112,7 @@ class LindstedtSeries(SeriesSums, Shown, Tabled):
     """
 
     def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.chain.label
         smallest = (
             f", smallest divisor {self.smallest_divisors[0]}"
             if self.smallest_divisors

@@ -125,7 +125,7 @@ class FrequencyAnalysis(Shown, Tabled):
         shown = ", ".join(f"omega_{q}={w:.15g} +- {e:.1g}" for q, w, e in by_seed)
         unknown = sum(line.harmonic is None for line in self.lines)
         lines = f"{counted(len(self.lines), 'line')}, {unknown} of them unidentified"
-        chain = repr(self.chain)[6:-1]
+        chain = self.chain.label
         independent = counted(
             len(self.seeds), "independent frequency", "independent frequencies"
         )

@@ -80,7 +80,7 @@ class FrequencyMap(Shown, Gridded):
     drifts: Floats
 
     def __repr__(self) -> str:
-        chain = repr(self.chain)[6:-1]
+        chain = self.chain.label
         E, n, d = self.energies, self.counts, self.drifts
         start = f"packet {joined(self.packet)}, T={self.T:.10g}"
         energies = f"{counted(len(E), 'energy', 'energies')} {E[0]:.6g} .. {E[-1]:.6g}"

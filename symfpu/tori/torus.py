@@ -145,7 +145,7 @@ class Torus(Shown, Gridded, Generic[Made]):
         show(self, "cosines", "phases")
 
     def __repr__(self) -> str:
-        chain = repr(self.chain).removeprefix("Chain(").removesuffix(")")
+        chain = self.chain.label
         by_seed = zip(self.seeds, self.frequencies, strict=True)
         rates = [f"omega_{q}={float(w):.13g}" for q, w in by_seed]
         places = min(self.digits or 13, SHOWN_DIGITS)
