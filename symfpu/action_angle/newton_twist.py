@@ -17,7 +17,7 @@ import numpy as np
 from symfpu.action_angle.actions import actions, half_weighted
 from symfpu.errors import SymfpuError
 from symfpu.numbers.arithmetic import Numbers
-from symfpu.refinement.conditions import Amplitude, seed_amplitudes
+from symfpu.refinement.conditions import amplitude, seed_amplitudes
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.harmonics import unit_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
@@ -107,7 +107,7 @@ def _changes(torus: Torus) -> _Changes:
     cosines = table.astype(np.longdouble)
     shifts = shifts_of(torus)
     amplitudes = seed_amplitudes(equation, cosines)
-    conditions = [Amplitude(i, a) for i, a in enumerate(amplitudes)]
+    conditions = [amplitude(i, A, len(amplitudes)) for i, A in enumerate(amplitudes)]
     try:
         with np.errstate(divide="ignore", invalid="ignore"):
             by_cosine, by_shift = responses(equation, conditions, cosines, shifts)

@@ -18,7 +18,7 @@ from symfpu.action_angle.newton_twist import NoTwist, equation_of
 from symfpu.files.progress import unheard
 from symfpu.normal.kronecker import KroneckerFlow
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, from_integers, mpf
-from symfpu.refinement.conditions import Amplitude, seed_amplitudes
+from symfpu.refinement.conditions import amplitude, seed_amplitudes
 from symfpu.refinement.digits import ACCURACY, CARRIED_DIGITS
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.iterative_refinement import Failure, Problem, converge
@@ -65,7 +65,7 @@ class Tangents:
         """Newton's matrix in doubles, where all amplitudes are held."""
         doubles = self.known.astype(float).astype(np.longdouble)
         amplitudes = seed_amplitudes(self.equation, doubles)
-        conditions = [Amplitude(i, A) for i, A in enumerate(amplitudes)]
+        conditions = [amplitude(i, A, len(amplitudes)) for i, A in enumerate(amplitudes)]
         shifts = shifts_of(self.torus)
         try:
             return Correction(self.equation, conditions, doubles, shifts)

@@ -13,7 +13,7 @@ from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
 from symfpu.families.members import Level, Member, linear_by_mode
 from symfpu.files.progress import Progress
-from symfpu.refinement.conditions import Amplitude, Condition, ratio_conditions
+from symfpu.refinement.conditions import Condition, amplitude, ratio_conditions
 from symfpu.refinement.extrapolation import coefficients_at
 from symfpu.refinement.refined_torus import TOLERANCE, Newton, NoTorus, refined_torus
 from symfpu.refinement.tori import refine
@@ -42,7 +42,8 @@ def first_torus(
     guess = short_series(chain, amplitudes, GUESS_ORDER)
     if energy_ratio is None:
         return refine(guess, amplitudes=amplitudes, tolerance=tolerance, progress=progress)
-    first = Amplitude(0, np.longdouble(next(iter(amplitudes.values()))))
+    A = np.longdouble(next(iter(amplitudes.values())))
+    first = amplitude(0, A, len(amplitudes))
     conditions = [first, *ratio_conditions(tuple(amplitudes), energy_ratio, energies=True)]
     return refined_torus(guess, conditions, tolerance=tolerance, progress=progress)
 

@@ -26,7 +26,7 @@ from symfpu.breathers.passage import (
 from symfpu.families.folder import Plan
 from symfpu.families.members import Event, Level, linear_by_mode
 from symfpu.files.progress import Progress
-from symfpu.refinement.conditions import Condition, Plane
+from symfpu.refinement.conditions import Condition, plane
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus
 from symfpu.tori.torus import Torus
@@ -166,7 +166,7 @@ class BreatherWalk:
             raise NoTorus("Newton's method leads to another orbit", found, found.residual())
         return found
 
-    def _plane(self, point: Point) -> Plane:
+    def _plane(self, point: Point) -> Condition:
         """Across the curve at one of its points."""
         orbit = orbit_at(point, 0)
         linear = np.array(list(linear_by_mode(orbit.chain, orbit.seeds).values()))
@@ -177,8 +177,8 @@ class BreatherWalk:
         by_A = float(point.tangent[point.balance.first]) / point.amplitude
         tangent = np.array([by_A, slope / scales[0]])
         tangent /= np.linalg.norm(tangent)
-        start = (np.log(A), np.longdouble(shifts[0] / np.longdouble(scales[0])))
-        return Plane(start, tuple(tangent.tolist()), tuple(scales.tolist()), 0.0)
+        start = np.append(np.log(A), shifts / scales)
+        return plane(start, tangent, scales, 0.0)
 
     def _events(self, k: int | None) -> list[Event]:
         """The resonances that the walk met after a point, without the number of the member."""

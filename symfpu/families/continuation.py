@@ -16,7 +16,7 @@ import numpy as np
 from symfpu.families.members import Level, linear_by_mode
 from symfpu.families.whole import Whole, require_one_curve, whole
 from symfpu.files.progress import Progress
-from symfpu.refinement.conditions import Condition, Plane, ratio_conditions
+from symfpu.refinement.conditions import Condition, plane, ratio_conditions
 from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats
@@ -104,10 +104,9 @@ class Way:
         A negative length leads back to the one before.
         """
         before, last = self.tori[-2:]
-        plane, length = self._plane(distance)
-        x, tangent, scales = map(np.array, (plane.start, plane.tangent, plane.scales))
+        x, tangent, scales, length = self._secant()
         guess = extrapolated(before, last, distance / length)
-        conditions = self._conditions(plane)
+        conditions = self._conditions(plane(x, tangent, scales, distance))
         found = refined_torus(
             guess, conditions, tolerance=self.tolerance, progress=self.progress
         )
@@ -124,21 +123,22 @@ class Way:
             self._require_between(found)
         return found
 
-    def _plane(self, distance: float) -> tuple[Plane, float]:
-        """The plane across the secant of the last two tori, and their distance."""
+    def _secant(self) -> tuple[Floats, Floats, Floats, float]:
+        """The variables of the last torus, the secant from the one before, scales, its length."""
         before, last = self.tori[-2:]
         scales = self.scales()
         x = self.variables(last, scales)
         difference = x - self.variables(before, scales)
         length = float(np.linalg.norm(difference.astype(float)))
-        tangent = (difference / length).astype(float).tolist()
-        return Plane(tuple(x), tuple(tangent), tuple(scales.tolist()), distance), length
+        tangent = (difference / length).astype(float)
+        return x, tangent, scales, length
 
     def _whole(self, torus: Torus[Newton]) -> Whole:
         """A torus with its tangent, which is computed once."""
         if id(torus) not in self._known:
-            plane, _ = self._plane(0.0)
-            self._known[id(torus)] = whole(torus, self._conditions(plane))
+            x, tangent, scales, _ = self._secant()
+            across = plane(x, tangent, scales, 0.0)
+            self._known[id(torus)] = whole(torus, self._conditions(across))
         return self._known[id(torus)]
 
     def require_neighbours(self) -> None:
@@ -231,7 +231,7 @@ class Way:
             except NoTorus:
                 if halving == GOAL_HALVINGS:
                     raise
-            _, length = pair._plane(0.0)
+            *_, length = pair._secant()
             middle = pair.at(-length / 2)
             passed = goal.passed(goal.of(middle))
             low, high = (low, middle) if passed else (middle, high)

@@ -20,7 +20,7 @@ from symfpu.families.members import Event, Level, Member, member
 from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_way import NormalWay
 from symfpu.numbers.long_doubles import DIGITS, long
-from symfpu.refinement.conditions import Crossing
+from symfpu.refinement.conditions import resonance
 from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats, Ints
@@ -174,9 +174,9 @@ def _resonant(way: Way, sign: _Sign) -> Torus[Newton] | None:
         linear = sum(n * chain.linear_frequency(q) for n, q in by_seed)
         Omega = chain.linear_frequency(sign.mode)
         wanted = Omega if twice > 0 else -Omega
-        crossing = Crossing(harmonic, long(wanted - linear), float(Omega))
+        condition = resonance(harmonic, long(wanted - linear), float(Omega))
     try:
-        found = way.meeting(crossing, extrapolated(first, second, sign.part - 1))
+        found = way.meeting(condition, extrapolated(first, second, sign.part - 1))
     except NoTorus:
         return None
     return found if list(harmonic) in found.harmonics.tolist() else None

@@ -25,7 +25,7 @@ from symfpu.numbers.counted import counted
 from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, exact
-from symfpu.refinement.conditions import FrequencyShift, ratio_conditions
+from symfpu.refinement.conditions import frequency, ratio_conditions
 from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.refined_torus import Newton, refined_torus
 from symfpu.refinement.tori import refine
@@ -219,15 +219,15 @@ def _between(
     found: Family, k: int, place: int, omega: Fraction, part: float
 ) -> Torus[Newton]:
     """The torus with this frequency, between member k and the next, near the given part."""
-    seed = found.seeds[place]
     with mpmath.workdps(2 * DIGITS):
         exact_omega = mpmath.mpf(omega.numerator) / omega.denominator
-        shift = long(exact_omega - found.chain.linear_frequency(seed))
+        linear = [found.chain.linear_frequency(q) for q in found.seeds]
+        shift = long(exact_omega - linear[place])
     first, second = (m.torus.in_doubles() for m in found.members[k : k + 2])
     energies = found.energy_ratio is not None
     ratio = found.energy_ratio or found.members[k].amplitudes
     conditions = [
-        FrequencyShift(place, shift),
+        frequency(place, shift, linear),
         *ratio_conditions(found.seeds, ratio, energies=energies),
     ]
     return refined_torus(extrapolated(first, second, part - 1), conditions)

@@ -12,7 +12,7 @@ import numpy as np
 
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import Between, followed_modes
-from symfpu.refinement.conditions import AmplitudeLine, Condition
+from symfpu.refinement.conditions import Condition, amplitude_line
 from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.refined_torus import NoTorus, refined_torus
 from symfpu.refinement.tori import refine
@@ -92,7 +92,7 @@ class Line:
         first = int(np.argmax(np.abs(steps)))
         relative = steps / abs(steps[first])
         others = [i for i in range(len(steps)) if i != first]
-        return [AmplitudeLine((first, i), start, relative) for i in others]
+        return [amplitude_line((first, i), start, relative) for i in others]
 
     def _torus(self, part: float) -> Torus:
         if part in self._known:

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.invariance import InvarianceEquation, Slopes
 from symfpu.refinement.lattice import Floats
 
 
@@ -27,79 +27,81 @@ class Condition(Protocol):
 
     def gradient(
         self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
+    ) -> Slopes:
         """Derivatives of the value by coefficients (H, C) and shifts (s,), in doubles."""
         ...
 
 
-@dataclass(frozen=True)
-class FrequencyShift:
-    """omega - Omega of a seed (its place among the seeds) is given."""
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """by_amplitude.A + by_shift.shifts = target, relative to a size; s factors of each.
 
-    place: int
-    shift: np.longdouble
+    of_logarithms : whether ln |A| take the place of the amplitudes A of the seeds.
+    """
+
+    by_amplitude: Floats
+    by_shift: Floats
+    target: np.longdouble
+    size: Any = 1.0
+    of_logarithms: bool = False
 
     def value(
         self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
-        off = shifts[self.place] - self.shift
-        return np.longdouble(off / self._size(equation))
+        A = seed_amplitudes(equation, cosines)
+        x = np.log(np.abs(A)) if self.of_logarithms else A
+        found = self.by_amplitude @ x + self.by_shift @ shifts
+        return np.longdouble((found - self.target) / self.size)
 
     def gradient(
         self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
-        by_shift = np.zeros(len(shifts))
-        by_shift[self.place] = 1 / float(self._size(equation))
-        return np.zeros(cosines.shape), by_shift
+    ) -> Slopes:
+        A, size = seed_amplitudes(equation, cosines), float(self.size)
+        slopes = self.by_amplitude / A if self.of_logarithms else self.by_amplitude
+        by_cosine = np.zeros(cosines.shape)
+        by_cosine[equation.seed_rows, equation.seed_columns] = slopes.astype(float) / size
+        return by_cosine, self.by_shift.astype(float) / size
 
-    def _size(self, equation: InvarianceEquation) -> np.longdouble:
-        return np.longdouble(equation.seed_frequencies[self.place])
+
+def frequency(place: int, shift: np.longdouble, linear: Sequence[Any]) -> Linear:
+    """omega - Omega of a seed (its place among the seeds) is given; linear : Omega of all."""
+    s = len(linear)
+    return Linear(np.zeros(s), np.eye(s)[place], shift, float(linear[place]))
 
 
-@dataclass(frozen=True)
-class Crossing:
+def amplitude(place: int, A: np.longdouble, s: int) -> Linear:
+    """The amplitude of one of s seeds is given."""
+    return Linear(np.eye(s)[place], np.zeros(s), A, A)
+
+
+def resonance(harmonic: Sequence[int], shift: np.longdouble, size: float) -> Linear:
     """nu.omega is, up to its sign, the linear frequency of a mode.
 
     nu.(omega - Omega) = shift, relative to size, which is that frequency.
     """
-
-    harmonic: tuple[int, ...]
-    shift: np.longdouble
-    size: float
-
-    def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> np.longdouble:
-        moved = np.dot(np.array(self.harmonic), shifts)
-        return np.longdouble((moved - self.shift) / self.size)
-
-    def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
-        by_shift = np.array(self.harmonic) / self.size
-        return np.zeros(cosines.shape), by_shift
+    factors = np.array(harmonic)
+    return Linear(np.zeros(len(factors)), factors, shift, size)
 
 
-@dataclass(frozen=True)
-class Amplitude:
-    """The amplitude of a seed is given."""
+def amplitude_line(places: tuple[int, int], start: Floats, steps: Floats) -> Linear:
+    """The amplitudes of two seeds are on a line: (A - start) of the one to steps as of the other.
 
-    place: int
-    amplitude: np.longdouble
+    places : of the two among the seeds, the first with a step. start, steps : of all seeds, (s,).
+    """
+    i, j = places
+    factors = np.zeros(len(steps), dtype=np.longdouble)
+    factors[j], factors[i] = steps[i], -steps[j]
+    return Linear(factors, np.zeros(len(steps)), np.longdouble(factors @ start))
 
-    def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> np.longdouble:
-        A = seed_amplitudes(equation, cosines)[self.place]
-        return np.longdouble(A / self.amplitude - 1)
 
-    def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
-        row, column = equation.seed_rows[self.place], equation.seed_columns[self.place]
-        by_cosine = np.zeros(cosines.shape)
-        by_cosine[row, column] = 1 / float(self.amplitude)
-        return by_cosine, np.zeros(len(shifts))
+def plane(x: Floats, tangent: Floats, scales: Floats, distance: float) -> Linear:
+    """A plane across the way of a family: tangent.(y - x) = distance.
+
+    y are the variables (ln |A| of all seeds, shifts / scales), x a point of the way, (2s,).
+    """
+    by_amplitude, by_shift = np.split(tangent.astype(np.longdouble), 2)
+    target = np.longdouble(tangent @ x + distance)
+    return Linear(by_amplitude, by_shift / scales, target, of_logarithms=True)
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,7 @@ class Start:
 
     def gradient(
         self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
+    ) -> Slopes:
         by_cosine = np.zeros(cosines.shape)
         waves = self._waves(equation).astype(float)
         by_cosine[:, equation.seed_columns[self.place]] = waves / self.size
@@ -135,82 +137,42 @@ class Start:
 
 
 @dataclass(frozen=True)
-class AmplitudeRatio:
-    """The amplitude of a seed is a multiple of that of the first one."""
+class Ratio:
+    """The amplitude of a seed, or its averaged energy, is a multiple of that of the first one."""
 
     place: int
     ratio: float
+    energies: bool
 
     def value(
         self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
     ) -> np.longdouble:
-        A = seed_amplitudes(equation, cosines)
-        expected = self.ratio * A[0]
-        return np.longdouble(A[self.place] / expected - 1)
-
-    def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
-        by_cosine = np.zeros(cosines.shape)
-        rows, columns = equation.seed_rows, equation.seed_columns
-        A = seed_amplitudes(equation, cosines).astype(float)
-        by_cosine[rows[self.place], columns[self.place]] = 1 / (self.ratio * A[0])
-        by_cosine[rows[0], columns[0]] = -A[self.place] / (self.ratio * A[0] ** 2)
-        return by_cosine, np.zeros(len(shifts))
-
-
-@dataclass(frozen=True, eq=False)
-class AmplitudeLine:
-    """The amplitudes of two seeds are on a line: (A - start) of the one to steps as of the other.
-
-    places : of the two among the seeds, the first with a step. start, steps : of all seeds, (s,).
-    """
-
-    places: tuple[int, int]
-    start: Floats
-    steps: Floats
-
-    def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> np.longdouble:
-        (i, j), gone = self.places, seed_amplitudes(equation, cosines) - self.start
-        return np.longdouble(self.steps[i] * gone[j] - self.steps[j] * gone[i])
-
-    def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
-        (i, j), by_cosine = self.places, np.zeros(cosines.shape)
-        rows, columns = equation.seed_rows, equation.seed_columns
-        by_cosine[rows[j], columns[j]] = self.steps[i]
-        by_cosine[rows[i], columns[i]] = -self.steps[j]
-        return by_cosine, np.zeros(len(shifts))
-
-
-@dataclass(frozen=True)
-class EnergyRatio:
-    """The averaged harmonic energy of a seed mode is a multiple of that of the first one."""
-
-    place: int
-    ratio: float
-
-    def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> np.longdouble:
-        first, _ = equation.seed_energy(0, cosines, shifts)
-        own, _ = equation.seed_energy(self.place, cosines, shifts)
+        first, _ = self._of_seed(0, equation, cosines, shifts)
+        own, _ = self._of_seed(self.place, equation, cosines, shifts)
         return np.longdouble(own / (self.ratio * first) - 1)
 
     def gradient(
         self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
-        first, of_first = equation.seed_energy(0, cosines, shifts)
-        own, of_own = equation.seed_energy(self.place, cosines, shifts)
+    ) -> Slopes:
+        first, of_first = self._of_seed(0, equation, cosines, shifts)
+        own, of_own = self._of_seed(self.place, equation, cosines, shifts)
         factors = 1 / (self.ratio * first), -own / (self.ratio * first**2)
         by_cosine, by_shift = (
             (factors[0] * x + factors[1] * y).astype(float)
             for x, y in zip(of_own, of_first, strict=True)
         )
         return by_cosine, by_shift
+
+    def _of_seed(
+        self, place: int, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    ) -> tuple[np.longdouble, Slopes]:
+        """Its energy or amplitude, and the derivatives."""
+        if self.energies:
+            return equation.seed_energy(place, cosines, shifts)
+        by_cosine = np.zeros(cosines.shape)
+        by_cosine[equation.seed_rows[place], equation.seed_columns[place]] = 1
+        A = seed_amplitudes(equation, cosines)[place]
+        return A, (by_cosine, np.zeros(len(shifts)))
 
 
 @dataclass(frozen=True)
@@ -231,39 +193,9 @@ class EnergyLevel:
 
     def gradient(
         self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
+    ) -> Slopes:
         _, slopes = equation.energy(cosines, shifts, harmonic=self.harmonic)
         by_cosine, by_shift = ((slope / self.energy).astype(float) for slope in slopes)
-        return by_cosine, by_shift
-
-
-@dataclass(frozen=True)
-class Plane:
-    """A plane across the way of a family: tangent.(x - x_0) = distance.
-
-    x are the variables (ln A of all seeds, shifts / scale).
-    """
-
-    start: tuple[np.longdouble, ...]
-    tangent: tuple[float, ...]
-    scales: tuple[float, ...]
-    distance: float
-
-    def value(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> np.longdouble:
-        x = plane_variables(equation, cosines, shifts, self.scales)
-        gone = np.dot(np.array(self.tangent), x - np.array(self.start))
-        return np.longdouble(gone - self.distance)
-
-    def gradient(
-        self, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[Floats, Floats]:
-        s, tangent = len(shifts), np.array(self.tangent)
-        A = seed_amplitudes(equation, cosines).astype(float)
-        by_cosine = np.zeros(cosines.shape)
-        by_cosine[equation.seed_rows, equation.seed_columns] = tangent[:s] / A
-        by_shift = tangent[s:] / np.array(self.scales)
         return by_cosine, by_shift
 
 
@@ -272,19 +204,9 @@ def seed_amplitudes(equation: InvarianceEquation, cosines: Floats) -> Floats:
     return np.asarray(cosines[equation.seed_rows, equation.seed_columns])
 
 
-def plane_variables(
-    equation: InvarianceEquation, cosines: Floats, shifts: Floats, scales: Sequence[float]
-) -> Floats:
-    """(ln |A| of the seeds, shifts in units of scales), shape (2s,)."""
-    A = seed_amplitudes(equation, cosines)
-    scaled = shifts / np.array(scales)
-    return np.concatenate([np.log(np.abs(A)), scaled])
-
-
 def ratio_conditions(
     seeds: Sequence[int], ratio: Mapping[int, Any], *, energies: bool
 ) -> list[Condition]:
     """The s - 1 conditions of a ratio, by seed, of amplitudes or of averaged mode energies."""
-    kind = EnergyRatio if energies else AmplitudeRatio
     first, *others = [float(ratio[q]) for q in seeds]
-    return [kind(i, other / first) for i, other in enumerate(others, 1)]
+    return [Ratio(i, other / first, energies) for i, other in enumerate(others, 1)]

@@ -21,11 +21,11 @@ from symfpu.numbers.arithmetic import mpf
 from symfpu.numbers.long_doubles import long
 from symfpu.numbers.typed import exact
 from symfpu.refinement.conditions import (
-    Amplitude,
     Condition,
     EnergyLevel,
-    FrequencyShift,
     Start,
+    amplitude,
+    frequency,
     ratio_conditions,
 )
 from symfpu.refinement.guesses import frequency_shifts, moderate_by_seed, numbers_by_seed
@@ -75,7 +75,8 @@ class Frequencies(Prescribed):
     def conditions(self, part: float = 1.0) -> list[Condition]:
         shifts = frequency_shifts(self.chain, self.seeds, self.held_frequencies)
         shifts = shifts * np.longdouble(part) ** 2
-        return [FrequencyShift(place, shift) for place, shift in enumerate(shifts)]
+        linear = [self.chain.linear_frequency(q) for q in self.seeds]
+        return [frequency(place, shift, linear) for place, shift in enumerate(shifts)]
 
 
 class Amplitudes(Prescribed):
@@ -87,8 +88,9 @@ class Amplitudes(Prescribed):
         self.held_amplitudes = amplitudes
 
     def conditions(self, part: float = 1.0) -> list[Condition]:
+        s = len(self.held_amplitudes)
         amplitudes = [long(A) * np.longdouble(part) for A in self.held_amplitudes]
-        return [Amplitude(place, A) for place, A in enumerate(amplitudes)]
+        return [amplitude(place, A, s) for place, A in enumerate(amplitudes)]
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from symfpu import Chain, InputError, NotInFamily, family, member_at_energy, mem
 from symfpu.families import continuation
 from symfpu.families.beginnings import first_torus
 from symfpu.families.members import member
-from symfpu.refinement.conditions import Crossing
+from symfpu.refinement.conditions import Linear
 from symfpu.refinement.tori import shifts_of
 from tests import tolerances
 from tests.families.cases import ROUND
@@ -246,7 +246,7 @@ def test_a_resonance_that_is_not_located_is_interpolated(monkeypatch):
     for refined in (none, another):
 
         def instead(torus, conditions, refined=refined, **options):
-            crossing = isinstance(conditions[0], Crossing)
+            crossing = isinstance(conditions[0], Linear) and not conditions[0].of_logarithms
             return (refined if crossing else true)(torus, conditions, **options)
 
         with monkeypatch.context() as patched:

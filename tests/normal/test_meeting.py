@@ -11,7 +11,7 @@ from symfpu import Chain, Newton, ParametricResonance, normal_modes, refine
 from symfpu.action_angle.newton_twist import equation_of
 from symfpu.normal.meeting import Crossed, Lost, Meeting
 from symfpu.normal.resonances import PARAMETRIC, SUM
-from symfpu.refinement.conditions import Amplitude
+from symfpu.refinement.conditions import amplitude
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.tori import refined_torus, shifts_of
 from tests.normal import cases
@@ -28,7 +28,7 @@ def torus(A):
 
 
 def met(condition, guess):
-    return refined_torus(guess, [condition, Amplitude(0, np.longdouble("0.1"))]).amplitudes[5]
+    return refined_torus(guess, [condition, amplitude(0, np.longdouble("0.1"), 2)]).amplitudes[5]
 
 
 def differences(condition, equation, cosines, shifts):

@@ -9,16 +9,15 @@ import pytest
 import symfpu
 from symfpu import Chain, Torus, refine
 from symfpu.refinement.conditions import (
-    Amplitude,
-    AmplitudeRatio,
-    Crossing,
     EnergyLevel,
-    EnergyRatio,
-    FrequencyShift,
-    Plane,
+    Ratio,
     Start,
-    plane_variables,
+    amplitude,
+    amplitude_line,
+    frequency,
+    plane,
     ratio_conditions,
+    resonance,
 )
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
@@ -61,21 +60,34 @@ def met(state):
     torus, A = state.torus, state.cosines[state.equation.seed_rows, state.equation.seed_columns]
     spectrum, turned = torus.average_spectrum(), replace(torus, phases=dict(zip(SEEDS, PHASES, strict=True)))
     rate, linear = float(sum(n * w for n, w in zip((1, -2, 3), torus.frequencies, strict=True))), CHAIN.frequencies()[np.array(SEEDS) - 1]
-    scales, tangent = (0.5, 2.0, 1.5), (0.3, -0.5, 0.2, 0.7, -0.4, 0.1)
+    scales, tangent = np.array([0.5, 2.0, 1.5]), np.array([0.3, -0.5, 0.2, 0.7, -0.4, 0.1])
+    steps = np.array([0.25, 1.0, -0.5])
     return {
-        "frequency": FrequencyShift(1, state.shifts[1]),
-        "crossing": Crossing((1, -2, 3), np.longdouble(rate - linear @ (1, -2, 3)), 0.7),
-        "amplitude": Amplitude(2, A[2]),
-        "amplitude ratio": AmplitudeRatio(1, float(A[1] / A[0])),
-        "energy ratio": EnergyRatio(2, float(spectrum[2] / spectrum[1])),
+        "frequency": frequency(1, state.shifts[1], linear),
+        "resonance": resonance((1, -2, 3), np.longdouble(rate - linear @ (1, -2, 3)), 0.7),
+        "amplitude": amplitude(2, A[2], 3),
+        "amplitude ratio": Ratio(1, float(A[1] / A[0]), energies=False),
+        "amplitude line": amplitude_line((1, 2), A - 0.3 * steps, steps),
+        "energy ratio": Ratio(2, float(spectrum[2] / spectrum[1]), energies=True),
         "energy": EnergyLevel(np.longdouble(torus.energy()), harmonic=False),
         "harmonic energy": EnergyLevel(np.longdouble(torus.harmonic_energies().sum()), harmonic=True),
         "start": Start(1, np.longdouble(turned.Q(0.0)[SEEDS[1] - 1]), PHASES, 0.7),
-        "plane": Plane(tuple(plane_variables(state.equation, state.cosines, state.shifts, scales)), tangent, scales, 0.0),
+        "plane": plane(np.append(np.log(np.abs(A)), state.shifts / scales), tangent, scales, 0.0),
     }
 
 
-KINDS = ("frequency", "crossing", "amplitude", "amplitude ratio", "energy ratio", "energy", "harmonic energy", "start", "plane")
+KINDS = (
+    "frequency",
+    "resonance",
+    "amplitude",
+    "amplitude ratio",
+    "amplitude line",
+    "energy ratio",
+    "energy",
+    "harmonic energy",
+    "start",
+    "plane",
+)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -133,6 +145,6 @@ def test_gradients_are_derivatives(state, kind):
 
 def test_ratios_are_to_the_first_seed():
     ratio = {3: 1, 2: 4, 6: "2"}
-    assert ratio_conditions(SEEDS, ratio, energies=False) == [AmplitudeRatio(1, 0.5), AmplitudeRatio(2, 0.25)]
-    assert ratio_conditions(SEEDS, ratio, energies=True) == [EnergyRatio(1, 0.5), EnergyRatio(2, 0.25)]
+    assert ratio_conditions(SEEDS, ratio, energies=False) == [Ratio(1, 0.5, energies=False), Ratio(2, 0.25, energies=False)]
+    assert ratio_conditions(SEEDS, ratio, energies=True) == [Ratio(1, 0.5, energies=True), Ratio(2, 0.25, energies=True)]
     assert ratio_conditions((5,), {5: 2}, energies=True) == []

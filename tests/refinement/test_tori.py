@@ -12,7 +12,7 @@ import symfpu
 from symfpu import Chain, InputError, NoTorus, frequency_shift, lindstedt, refine
 from symfpu.paper.printed import TWO_TORUS
 from symfpu.refinement import newton
-from symfpu.refinement.conditions import FrequencyShift
+from symfpu.refinement.conditions import frequency
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.tori import shifts_of
 from tests import tolerances
@@ -124,7 +124,9 @@ def test_newtons_method_converges_quadratically(case, monkeypatch):
     equation = InvarianceEquation(torus.chain, torus.seeds, torus.harmonics)
     shifts = shifts_of(torus)
     disturbed = torus.cosines * (1 + 0.01 * np.random.default_rng(1).normal(size=torus.cosines.shape)) * equation.mask
-    found = newton.newton(equation, [FrequencyShift(i, x) for i, x in enumerate(shifts)], disturbed.astype(np.longdouble), shifts)
+    found = newton.newton(
+        equation, [frequency(i, x, equation.seed_frequencies) for i, x in enumerate(shifts)], disturbed.astype(np.longdouble), shifts
+    )
     assert not found.failure
     changes = np.array([step.change for step in found.steps])
     assert changes[0] > 1e-3

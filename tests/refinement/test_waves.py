@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from symfpu import Torus
-from symfpu.refinement.conditions import Amplitude, AmplitudeRatio, EnergyLevel, EnergyRatio, FrequencyShift
+from symfpu.refinement.conditions import EnergyLevel, Ratio, amplitude, frequency
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Lattice, places_of
 from tests.refinement.test_conditions import RICHARDSON, STEP, derivative
@@ -113,12 +113,12 @@ def conditions(law):
     equation, c, shifts = made(law)
     H, _ = equation.energy(c, shifts, harmonic=False)
     return {
-        "frequency": FrequencyShift(1, shifts[1] + 1),
-        "amplitude": Amplitude(1, np.longdouble(0.2)),
-        "amplitude ratio": AmplitudeRatio(1, 0.7),
+        "frequency": frequency(1, shifts[1] + 1, equation.seed_frequencies),
+        "amplitude": amplitude(1, np.longdouble(0.2), 2),
+        "amplitude ratio": Ratio(1, 0.7, energies=False),
         "energy": EnergyLevel(H, harmonic=False),
         "harmonic energy": EnergyLevel(H, harmonic=True),
-        "energy ratio": EnergyRatio(1, 1.7),
+        "energy ratio": Ratio(1, 1.7, energies=True),
     }
 
 
