@@ -35,6 +35,11 @@ def __getattr__(name: str) -> Any:
     return value
 
 
+def _load_pictures() -> None:
+    """Makes known what `plot()` of results draws: pictures stand above all results."""
+    import_module("symfpu.plots.usual")
+
+
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
 

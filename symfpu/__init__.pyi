@@ -254,3 +254,5 @@ from symfpu.tori.frequencies import (
 
 __version__: str
 __all__: list[str]
+
+def _load_pictures() -> None: ...

@@ -1,4 +1,4 @@
-"""Notebooks: expressions as LaTeX, and as HTML whose symbols open; results that show themselves."""
+"""Notebooks: expressions as LaTeX, and as HTML whose symbols open."""
 
 from __future__ import annotations
 
@@ -7,14 +7,12 @@ import sys
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from html import escape
-from importlib import import_module
 from typing import Any, NamedTuple
 
 import symengine as se
 
 # characters of an expression up to which SymPy's printer is worth its time
 LONGEST_EXPRESSION = 20_000
-PICTURES = "symfpu.plots.usual"  # the pictures of results, by their kind
 
 
 def latex(expression: Any) -> str:
@@ -57,25 +55,6 @@ def init_printing() -> None:
     shell = ipython.get_ipython() if ipython else None
     if shell is not None and hasattr(shell, "display_formatter"):
         shell.display_formatter.formatters["text/latex"].for_type(se.Basic, latex)
-
-
-class Shown:
-    """A result with a picture of its own, and with its answer as HTML in notebooks.
-
-    Pictures are drawn far above results: the module that knows them all is imported when the
-    first one is asked for.
-    """
-
-    def plot(self, ax: Any = None) -> Any:
-        """The picture that one expects of it: see `symfpu.plots` for this one and for others.
-
-        ax : axes of matplotlib; default new ones of pyplot. Returns the axes. Raises InputError.
-        """
-        return import_module(PICTURES).picture(self, ax)
-
-    def _repr_html_(self) -> str:
-        """Verdict, numbers and a small picture, which notebooks show in place of the text."""
-        return str(import_module(PICTURES).html(self))
 
 
 class Meaning(NamedTuple):

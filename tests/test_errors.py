@@ -23,7 +23,7 @@ from symfpu.paper.side_by_side import TargetsFailed
 from symfpu.proofs.reading import CertificateError
 from symfpu.sweeps.rows import SweepFailure
 from tests.bundles.test_bundle import same
-from tests.results import COPIES, PAIR, SINGLE, mapped, orbit, refined, stability, swept, swept_rules
+from tests.every_result import COPIES, PAIR, SINGLE, mapped, orbit, refined, stability, swept, swept_rules
 
 
 def caught(kind, function, *arguments, **options):

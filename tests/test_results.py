@@ -1,4 +1,4 @@
-"""Every public result, by one registry (tests/results.py): copies, text, files, records, tables and pictures."""
+"""Every public result, by one registry (tests/every_result.py): copies, text, files, records, tables and pictures."""
 
 import base64
 import json
@@ -15,9 +15,11 @@ from matplotlib.figure import Figure
 import symfpu
 from symfpu import InputError, load, save
 from symfpu.cli.main import main
+from symfpu.results.pictures import picture_of
+from symfpu.results.result import Result
 from tests.bundles.test_bundle import same
 from tests.elements import read
-from tests.results import CASES, COPIES, WITHOUT, kind_of, public_classes, result
+from tests.every_result import CASES, COPIES, WITHOUT, kind_of, public_classes, result
 
 ROOT = Path(__file__).parents[1]
 METHODS = {"record": "record", "table": "to_frame"}
@@ -237,10 +239,13 @@ def returns_from_netcdf(found, path):
 
 LARGEST_IMAGE = 60_000  # bytes
 WITHOUT_PICTURE = {"LindstedtSeries, residue", "LindstedtSeries, symbolic", "LindstedtSeries, nested", "SeriesForAllN"}
-SHOWN = [name for name in CASES if hasattr(getattr(symfpu, kind_of(name), None), "plot")]
+SHOWN = [name for name in CASES if isinstance(result(name), Result)]
+WITH_PICTURE = [name for name in SHOWN if picture_of(type(result(name)))]
+DRAWN = [name for name in WITH_PICTURE if name not in WITHOUT_PICTURE]
 
 
-DRAWN = [name for name in SHOWN if name not in WITHOUT_PICTURE]
+def test_most_usual_results_have_a_picture():
+    assert len({kind_of(name) for name in WITH_PICTURE}) >= 16
 
 
 @pytest.mark.parametrize("name", DRAWN)
@@ -265,8 +270,10 @@ def test_a_result_answers_in_html(name):
     assert image["alt"].endswith(f"of this {kind_of(name)}")
 
 
-@pytest.mark.parametrize("name", [name for name in SHOWN if name in WITHOUT_PICTURE])
+@pytest.mark.parametrize("name", [name for name in SHOWN if name not in DRAWN])
 def test_a_result_without_a_picture_still_answers(name):
-    assert read(result(name)._repr_html_()).images == []
-    with pytest.raises(InputError, match="frequencies="):
+    page = read(result(name)._repr_html_())
+    assert page.text.lstrip().startswith(f"{type(result(name)).__name__}: ")
+    assert page.images == []
+    with pytest.raises(InputError, match=r"frequencies=|see symfpu\.plots"):
         result(name).plot(Figure().add_subplot())

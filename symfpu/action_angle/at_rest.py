@@ -28,11 +28,11 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.frequency_shift import shift_coefficients
 from symfpu.chain.symbols import linear_symbol
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import rational, seed_modes
+from symfpu.results.attributes import attributes
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 
 Floats = NDArray[np.float64]
 TODA = Fraction(2, 3)  # beta / alpha^2

@@ -34,13 +34,13 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.symbols import amplitude_symbol, linear_symbol
 from symfpu.errors import InputError, ResonantDivisor
 from symfpu.files.progress import Progress, unheard
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table, joined
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import MULTIPRECISION, with_digits
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer
+from symfpu.results.attributes import attributes
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table, joined
 from symfpu.series.arguments import digits_of
 from symfpu.series.expanded import ExpandedSeries, driven_modes, monomial_of
 from symfpu.series.lindstedt import lindstedt

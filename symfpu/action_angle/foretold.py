@@ -8,7 +8,7 @@ by what grows with t. So log GALI_k costs the same at t = 1e3 and at t = 1e12.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -40,15 +40,15 @@ from symfpu.dynamics.dimension import (
     torus_dimension,
 )
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.tabled import Gridded
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.torus import require_refined, second_order
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import double, random_seed
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, listed
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.result import Gridded
 from symfpu.tori.torus import Torus, require_solution
 
 Floats = NDArray[np.float64]
@@ -60,7 +60,7 @@ LONGEST = 1e15  # time: angles are known to 0.1 there
 
 @public
 @dataclass(frozen=True, eq=False)
-class ForetoldIndices(Shown, Gridded):
+class ForetoldIndices(Gridded):
     """log10 GALI_k of a torus in closed form. Made by `foretold_indices`; ours, dimensionless.
 
     torus : the torus. times : (S,). log10_gali : (S, vectors-1), for k = 2 .. vectors. growth : of
@@ -83,6 +83,17 @@ class ForetoldIndices(Shown, Gridded):
     growth: Floats
     rates: Floats = field(repr=False)
     normal: str
+
+    def _fields(self) -> Iterator[Field]:
+        yield from super()._fields()
+        yield Field("", label="chain", shown=self.torus.chain.label)
+        yield Field("", label="seeds", shown=listed(self.torus.seeds))
+        for k, time in self.settling().items():
+            settled = settled_text(time, self.times[-1])
+            shown = f"slope {self.asymptotic_slopes[k]}, {settled}"
+            yield Field("", label=f"G_{k}", shown=shown)
+        rates = listed(f"{rate:.2g}" for rate in self.rates)
+        yield Field("", label="rates of growth", shown=rates)
 
     def __repr__(self) -> str:
         chain = self.torus.chain.label

@@ -7,6 +7,7 @@ convex in the actions, and Nekhoroshev's estimates are at their best.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -21,12 +22,20 @@ from symfpu.action_angle.newton_twist import NoTwist, changes_by_newton
 from symfpu.action_angle.precise_twist import changes_in_digits
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.tabled import Gridded
 from symfpu.normal.torus import in_digits
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text, with_digits
 from symfpu.numbers.public import public
+from symfpu.results.attributes import attributes
+from symfpu.results.field import (
+    Field,
+    chain_fields,
+    numbers_by_seed,
+    seeds_field,
+    shown_number,
+)
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.numbers import fifteen_digits, number_text
+from symfpu.results.result import Gridded
 from symfpu.tori.torus import Torus
 
 SOLVED = 1e-8  # relative residual above which a torus is not refined
@@ -55,6 +64,29 @@ class Twist(Gridded):
     matrix: Numbers = field(repr=False)
     method: str
     digits: int | None = None
+
+    def _fields(self) -> Iterator[Field]:
+        digits = self.digits
+
+        def written(values: Any) -> list[str]:
+            return [number_text(x, digits) for x in values]
+
+        yield from chain_fields(self.chain)
+        yield seeds_field(self.seeds)
+        yield Field("frequencies", numbers_by_seed(self.omega, digits))
+        yield Field("digits", digits)
+        actions = dict(zip(self.seeds, self.actions, strict=True))
+        yield Field("actions", numbers_by_seed(actions, digits))
+        yield Field("twist", list(map(written, self.matrix)))
+        yield Field("twist_method", self.method)
+        yield Field("asymmetry", fifteen_digits(self.asymmetry))
+        yield Field("eigenvalues", written(self.eigenvalues))
+        yield Field("signature", list(self.signature))
+        yield Field("definiteness", self.definiteness, "definiteness")
+        for name in ("determinant", "isoenergetic_determinant"):
+            value = getattr(self, name)
+            shown = shown_number(value, digits)
+            yield Field(name, number_text(value, digits), name.replace("_", " "), shown)
 
     def __repr__(self) -> str:
         chain = self.chain.label

@@ -18,12 +18,14 @@ from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.dynamics.alignment import last_time
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Column, Table, joined
-from symfpu.frames.tabled import Tabled
-from symfpu.notebook import Shown
+from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, double, exact, integer
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field
+from symfpu.results.numbers import number_text
+from symfpu.results.result import Tabled
+from symfpu.results.table import Column, Table, joined
 from symfpu.series.memory import series_bytes
 from symfpu.sweeps.rows import SweepRow, SweepRows
 from symfpu.sweeps.sweep import read_sweep, sweep
@@ -59,6 +61,19 @@ class AtlasBorder:
         case = f"N={self.N}, {self.model}, packet {self.packet}, order {self.order}"
         return f"AtlasBorder({case}: {self.border} {place}{why})"
 
+    def entry(self) -> dict[str, Any]:
+        """For a record."""
+        energy = None if self.energy is None else number_text(self.energy, None)
+        return {
+            "chain": dict(self.chain),
+            "packet": self.packet,
+            "modes": list(self.modes),
+            "order": self.order,
+            "border": self.border,
+            "energy": energy,
+            "details": dict(self.details),
+        }
+
     @property
     def N(self) -> int:
         """Number of bonds."""
@@ -84,7 +99,7 @@ class AtlasBorder:
 
 @public
 @dataclass(frozen=True)
-class Atlas(Shown, Tabled):
+class Atlas(Tabled):
     """Borders of q-tori by chain and packet. Made by `atlas` and `read_atlas`; ours.
 
     rows : a row for each chain, packet and order, with its points and borders, or its failure.
@@ -102,6 +117,27 @@ class Atlas(Shown, Tabled):
     """
 
     rows: SweepRows = field(repr=False)
+
+    def _answer(self) -> str:
+        found = sum(border.energy is not None for border in self.borders)
+        return counted(found, "border")
+
+    def _fields(self) -> Iterator[Field]:
+        """What all columns share, every border, the power laws, and the columns that failed."""
+        yield Field("fixed", dict(self.rows.fixed))
+        yield Field("cases", len(self.rows.rows))
+        yield Field("points", self.points, "points")
+        yield Field("borders", [border.entry() for border in self.borders])
+        laws = []
+        for (model, packet, border), law in self.laws.items():
+            which = {"model": model, "packet": packet, "border": border}
+            laws.append(which | law.entry())
+            power = f"N^({law.exponent:.3g} +- {law.error:.2g})"
+            yield Field("", label=f"{border} of {packet}, {model}", shown=power)
+        yield Field("laws", laws)
+        failed = self.rows.failures
+        failures = [{"case": row.case, "reason": str(row.failure)} for row in failed]
+        yield Field("failures", failures)
 
     def __repr__(self) -> str:
         done = [row for row in self.rows.rows if row.failure is None]

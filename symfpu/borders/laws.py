@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from symfpu.errors import InputError
-from symfpu.frames.recorded import Recorded
+from symfpu.results.field import Field, fields_of
+from symfpu.results.numbers import fifteen_digits, number_text
+from symfpu.results.result import Result
 
 LEAST_LENGTHS = 3  # that a slope and its error need
 
 
 @dataclass(frozen=True)
-class BorderLaw(Recorded):
+class BorderLaw(Result):
     """H of a border = factor * N^exponent, by least squares of logarithms; ours, dimensionless.
 
     error : of the exponent, one standard deviation from the scatter about the line. local :
@@ -37,6 +40,20 @@ class BorderLaw(Recorded):
         """Exponents between neighbouring lengths."""
         changes = np.diff(np.log(self.energies)) / np.diff(np.log(self.lengths))
         return tuple(float(x) for x in changes)
+
+    def entry(self) -> dict[str, Any]:
+        """The exponent with its error and what was fitted, for a record."""
+        return {
+            "factor": fifteen_digits(self.factor),
+            "exponent": fifteen_digits(self.exponent),
+            "error": fifteen_digits(self.error),
+            "local": [fifteen_digits(x) for x in self.local],
+            "lengths": list(self.lengths),
+            "energies": [number_text(H, None) for H in self.energies],
+        }
+
+    def _fields(self) -> Iterator[Field]:
+        yield from fields_of(self.entry())
 
     def __repr__(self) -> str:
         law = f"H = {self.factor:.3g} N^({self.exponent:.3g} +- {self.error:.2g})"

@@ -12,6 +12,7 @@ is exactly reciprocal, and the double 1 costs no digits.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -22,12 +23,20 @@ from symfpu.chain import bonds
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import particle_scheme
 from symfpu.dynamics.tangent import tangent_map_along
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.tabled import Gridded
-from symfpu.notebook import Shown
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import decimal
+from symfpu.results.attributes import attributes
+from symfpu.results.field import (
+    Field,
+    chain_fields,
+    exact_by_seed,
+    listed,
+    seeds_field,
+    shown_number,
+)
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Gridded
 from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
@@ -44,7 +53,7 @@ TANGENT, DOUBLING, QUADRUPLE = "real > 0", "real < 0", "complex quadruple"
 
 
 @dataclass(frozen=True, eq=False)
-class Floquet(Shown, Gridded):
+class Floquet(Gridded):
     """Multipliers of a periodic orbit; dimensionless.
 
     Made by `floquet`. Ours.
@@ -86,6 +95,30 @@ class Floquet(Shown, Gridded):
     symplecticity: float
     map_error: float
     trivial_error: float
+
+    def _answer(self) -> str:
+        return "stable" if self.stable else "unstable"
+
+    def _fields(self) -> Iterator[Field]:
+        yield from chain_fields(self.orbit.chain)
+        yield seeds_field(self.orbit.seeds)
+        yield Field("frequencies", exact_by_seed(self.orbit.omega))
+        yield Field("verdict", self.verdict)
+        yield from self.multiplier_fields()
+        yield Field("symplecticity", fifteen_digits(self.symplecticity))
+        yield Field("map_error", fifteen_digits(self.map_error))
+
+    def multiplier_fields(self) -> Iterator[Field]:
+        """Without the orbit; every multiplier as its real and imaginary part."""
+        parts = [[repr(float(x.real)), repr(float(x.imag))] for x in self.multipliers]
+        yield Field("multipliers", parts)
+        yield Field("stable", self.stable)
+        kinds = listed(f"{count} {kind}" for kind, count in self.instabilities.items())
+        label = "unstable" if kinds else ""
+        yield Field("instabilities", self.instabilities, label, kinds)
+        largest = fifteen_digits(self.largest)
+        shown = shown_number(self.largest)
+        yield Field("largest_multiplier", largest, "largest |multiplier|", shown)
 
     def __repr__(self) -> str:
         chain = self.orbit.chain.label

@@ -15,7 +15,7 @@ import contextlib
 import json
 import os
 import platform
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from math import pi
@@ -41,9 +41,11 @@ from symfpu.files.archive import (
 from symfpu.files.checkpoint import KINDS
 from symfpu.files.formats import ARCHIVE, BUNDLE, format_of, opened_by
 from symfpu.files.writing import open_to_read
-from symfpu.frames.recorded import Recorded
 from symfpu.numbers.arithmetic import text
 from symfpu.numbers.typed import integer, order_of
+from symfpu.results.field import Field
+from symfpu.results.numbers import json_value
+from symfpu.results.result import Result
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.from_series import FromSeries, RootCertificate
 from symfpu.tori.torus import Torus, comes_from, require_solution
@@ -61,7 +63,7 @@ PACKAGES = (
     "numba",
     "llvmlite",
 )
-Result: TypeAlias = LindstedtSeries | Torus
+Solved: TypeAlias = LindstedtSeries | Torus
 LONGEST_REASON = 160
 LONG_RUN = 100  # periods of the slowest seed at which the last test vector is taken
 
@@ -78,7 +80,7 @@ class OrbitPoint(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Bundle(Recorded):
+class Bundle(Result):
     """What a file held. Made by `load`; numbers are as they were saved, to the last bit or digit.
 
     All is dimensionless; the format is ours.
@@ -111,6 +113,16 @@ class Bundle(Recorded):
         held = self.series if self.torus is None else self.torus
         return self.other if held is None else held
 
+    def _fields(self) -> Iterator[Field]:
+        """What the file holds, and what made it."""
+        held = self.result
+        yield Field("kind", type(held).__name__)
+        yield from held._fields()
+        yield Field("provenance", dict(self.provenance))
+        yield Field("assessment", self.verdict)
+        points = [json_value(point._asdict()) for point in self.test_vectors]
+        yield Field("test_vectors", points)
+
     def __repr__(self) -> str:
         torus = "no torus"
         if comes_from(self.torus, FromSeries):
@@ -124,7 +136,7 @@ class Bundle(Recorded):
 
 def save(
     path: Path | str,
-    result: Result,
+    result: Solved,
     *,
     verdict: Json | None = None,
     command: str | None = None,
@@ -178,7 +190,7 @@ def document(verdict: Json | None, command: str | None, created: datetime | None
     }
 
 
-def parts_of(result: Result) -> tuple[Json, dict[str, Array]]:
+def parts_of(result: Solved) -> tuple[Json, dict[str, Array]]:
     """The entries of series and torus, and their arrays."""
     if isinstance(result, LindstedtSeries):
         series, torus = result, None

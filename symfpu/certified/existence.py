@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import compress
@@ -37,12 +38,14 @@ from symfpu.certified.segment import Line, direction
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.writing import write_text
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.one_sided import above, below, rational
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, energy_of, exact
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, chain_fields, seeds_field
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 from symfpu.series.arguments import digits_of
 from symfpu.tori.torus import Torus
 
@@ -128,6 +131,30 @@ class ExistenceProof(Tabled):
     block: int
     digits: int
     body: dict[str, Any] = field(repr=False)
+
+    def _fields(self) -> Iterator[Field]:
+        """A and H are the middles of intervals."""
+        digits, seed = self.digits + 3, str(self.seed)
+        yield from chain_fields(self.chain)
+        yield seeds_field((self.seed,))
+        yield Field("frequencies", {seed: decimal(self.frequency)})
+        yield Field("frequency_radius", fifteen_digits(self.frequency_radius))
+        yield Field("proved", True)
+        yield Field("theorem", self.theorem, "theorem")
+        yield Field("fixed", self.fixed)
+        yield Field("value", decimal(self.value))
+        yield Field("half_width", decimal(self.half_width))
+        yield Field("radius", fifteen_digits(self.radius))
+        yield Field("unique", fifteen_digits(self.unique))
+        yield Field("nu", str(self.nu))
+        yield Field("amplitudes", {seed: mpmath.nstr(self.amplitude, digits)})
+        yield Field("amplitude_radius", fifteen_digits(self.amplitude_radius))
+        yield Field("energy", mpmath.nstr(self.energy, digits))
+        yield Field("energy_radius", fifteen_digits(self.energy_radius))
+        bounds = {"Y": self.residual, "Z1": self.linear, "Z2": self.curvature}
+        yield Field("bounds", {name: fifteen_digits(x) for name, x in bounds.items()})
+        yield Field("harmonics", self.harmonics, "harmonics")
+        yield Field("block", self.block)
 
     @property
     def kind(self) -> str:

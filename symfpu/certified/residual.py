@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import mpmath
 
@@ -23,20 +24,57 @@ from symfpu.certified.torus_energy import EnergyBall, energy_of
 from symfpu.chain.chain import Chain
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import with_digits
 from symfpu.numbers.one_sided import above
 from symfpu.numbers.public import public
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, chain_fields, exact_by_seed, seeds_field
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 from symfpu.tori.torus import Torus
 
 FORMAT = "symfpu torus certificate"
 SCHEMA = 2
 SLACK = Fraction(1025, 1024)
 SHOWN_BITS = 53
+BOUND_DIGITS = 15
 
 Body = dict[str, Any]
+
+
+class TorusProof(Protocol):
+    """What all theorems about a computed torus say of it."""
+
+    @property
+    def chain(self) -> Chain: ...
+    @property
+    def seeds(self) -> tuple[int, ...]: ...
+    @property
+    def frequencies(self) -> tuple[Fraction, ...]: ...
+    @property
+    def theorem(self) -> str: ...
+    @property
+    def harmonics(self) -> int: ...
+    @property
+    def digits(self) -> int: ...
+
+
+def torus_proof_fields(proof: TorusProof) -> Iterator[Field]:
+    """Which torus a theorem is about."""
+    yield from chain_fields(proof.chain)
+    yield seeds_field(proof.seeds)
+    omega = dict(zip(proof.seeds, proof.frequencies, strict=True))
+    yield Field("frequencies", exact_by_seed(omega))
+    yield Field("proved", True)
+    yield Field("theorem", proof.theorem, "theorem")
+    yield Field("harmonics", proof.harmonics, "harmonics")
+    yield Field("digits", proof.digits, "digits")
+
+
+def bound_text(x: Any) -> str:
+    """A proved bound, a fraction or a number of mpmath, in fifteen digits."""
+    number = mpmath.mpf(x.numerator) / x.denominator if hasattr(x, "numerator") else x
+    return str(mpmath.nstr(number, BOUND_DIGITS))
 
 
 def certificate_of(body: Body) -> Body:
@@ -86,6 +124,15 @@ class ResidualProof(Tabled):
     harmonics: int
     digits: int
     body: Body = field(repr=False)
+
+    def _fields(self) -> Iterator[Field]:
+        """Bounds are texts, as they may be below all doubles."""
+        yield from torus_proof_fields(self)
+        yield Field("bound", bound_text(self.bound), "residual below")
+        yield Field("relative", bound_text(self.relative))
+        known = self.energy is not None
+        yield Field("energy", str(self.energy) if known else None)
+        yield Field("energy_radius", bound_text(self.energy_radius) if known else None)
 
     def __repr__(self) -> str:
         part = above(self.relative, 3)

@@ -10,6 +10,7 @@ import cmath
 import hashlib
 import json
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
@@ -35,13 +36,15 @@ from symfpu.certified.sectors import Sector, sectors_of
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.counted import counted
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, chain_fields, seeds_field
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 from symfpu.tori.torus import Torus
 
 FORMAT = "symfpu stability certificate"
@@ -68,6 +71,18 @@ class ProvedExponent:
     circle: bool
     linear: float
     block: int
+
+    def entry(self) -> dict[str, Any]:
+        """For a record; sigma of a hyperbolic one as [re, im]."""
+        sigma = fifteen_digits(self.sigma.real)
+        return {
+            "mode": self.mode,
+            "harmonic": self.harmonic,
+            "sector": self.sector,
+            "sigma": sigma if self.circle else [sigma, fifteen_digits(self.sigma.imag)],
+            "radius": fifteen_digits(self.radius),
+            "growth": [fifteen_digits(x) for x in self.growth],
+        }
 
     @property
     def growth(self) -> tuple[float, float]:
@@ -117,6 +132,20 @@ class StabilityProof(Tabled):
     exponents: tuple[ProvedExponent, ...]
     gaps: tuple[Gap, ...]
     body: dict[str, Any] = field(repr=False)
+
+    def _fields(self) -> Iterator[Field]:
+        orbit = self.existence
+        yield from chain_fields(orbit.chain)
+        yield seeds_field((orbit.seed,))
+        yield Field("frequencies", {str(orbit.seed): decimal(orbit.frequency)})
+        yield Field("proved", True)
+        yield Field("stable", self.stable)
+        yield Field("theorem", self.theorem, "theorem")
+        yield Field("radius", fifteen_digits(orbit.radius))
+        gaps = [[fifteen_digits(g.least), fifteen_digits(g.most)] for g in self.gaps]
+        yield Field("gaps", gaps)
+        yield Field("growth", [fifteen_digits(x) for x in self.growth])
+        yield Field("exponents", [one.entry() for one in self.exponents])
 
     def __repr__(self) -> str:
         proof = self.existence

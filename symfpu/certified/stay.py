@@ -7,7 +7,7 @@ there, and what it leaves is bounded.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -19,12 +19,14 @@ from symfpu.certified.norms import Norms, norms, weights_of
 from symfpu.certified.residual import (
     SLACK,
     Body,
+    bound_text,
     certificate_of,
     cosine_rows,
     dyadic_pair,
     residual_proof,
     rows_of,
     shown,
+    torus_proof_fields,
     torus_text,
     write_certificate,
 )
@@ -32,12 +34,14 @@ from symfpu.certified.rounded_torus import RoundedTorus, residual_of, rounded_to
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, exact
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 from symfpu.tori.torus import Torus
 
 TIME = 10**9  # the paper's longest orbits
@@ -123,6 +127,22 @@ class StayProof(Tabled):
     harmonics: int
     digits: int
     body: Body = field(repr=False)
+
+    def _fields(self) -> Iterator[Field]:
+        """With the time, the distances and what they follow from."""
+        yield from torus_proof_fields(self)
+        yield Field("bound", bound_text(self.bound), "residual below")
+        yield Field("time", decimal(self.time), "up to t")
+        yield Field("distance", bound_text(self.distance), "within")
+        yield Field("momentum", bound_text(self.momentum))
+        yield Field("drift", {str(q): bound_text(x) for q, x in self.drift.items()})
+        yield Field("longest", fifteen_digits(self.longest))
+        sigma = {str(q): fifteen_digits(x) for q, x in self.sigma.items()}
+        yield Field("sigma", sigma)
+        sizes = {"frame": self.frame, "curvature": self.curvature, "room": self.room}
+        bounds = {name: fifteen_digits(x) for name, x in sizes.items()}
+        residual = bound_text(self.growth.terms[0])
+        yield Field("bounds", {"residual": residual, **bounds})
 
     def __repr__(self) -> str:
         which = torus_text(self.chain, self.seeds, self.frequencies)

@@ -27,14 +27,9 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.reports.certified import (
-    residual_proof_record,
-    residual_proof_text,
-    stay_record,
-    stay_text,
-)
-from symfpu.reports.existence import existence_record, existence_text
-from symfpu.reports.stability_proof import stability_record, stability_text
+from symfpu.reports.certified import residual_proof_text, stay_text
+from symfpu.reports.existence import existence_text
+from symfpu.reports.stability_proof import stability_text
 from symfpu.saved.results import load
 from symfpu.tori.torus import Torus
 
@@ -73,11 +68,11 @@ ResidualOption = Annotated[
 ]
 
 Proof = ExistenceProof | StabilityProof | ResidualProof | StayProof
-REPORTS: dict[type, tuple[Callable[[Any], dict[str, Any]], Callable[[Any], str]]] = {
-    ExistenceProof: (existence_record, existence_text),
-    StabilityProof: (stability_record, stability_text),
-    ResidualProof: (residual_proof_record, residual_proof_text),
-    StayProof: (stay_record, stay_text),
+TEXTS: dict[type, Callable[[Any], str]] = {
+    ExistenceProof: existence_text,
+    StabilityProof: stability_text,
+    ResidualProof: residual_proof_text,
+    StayProof: stay_text,
 }
 
 
@@ -167,10 +162,9 @@ def _torus_proof(
 
 
 def _show(proof: Proof, target: Path | None, as_json: bool) -> None:
-    record, text = REPORTS[type(proof)]
     if as_json:
-        print_json(record(proof))
+        print_json(proof.record())
         return
-    say(text(proof))
+    say(TEXTS[type(proof)](proof))
     if target is not None:
         print(f"certificate: {target}")

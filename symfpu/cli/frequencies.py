@@ -42,7 +42,7 @@ from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
 from symfpu.numbers.typed import part
-from symfpu.reports.tables import text_table
+from symfpu.results.text_tables import text_table
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine, frequency_analysis
 from symfpu.spectral.mapping import FrequencyMap, frequency_map
 from symfpu.spectral.near import torus_near

@@ -59,7 +59,7 @@ from symfpu.files.writing import output_folder, write_rows
 from symfpu.normal.search import normal_modes
 from symfpu.normal.torus import checked_modes
 from symfpu.plots.indices import foretold as draw_foretold
-from symfpu.reports.tables import fifteen_digits
+from symfpu.results.numbers import fifteen_digits
 from symfpu.tori.torus import Torus
 
 

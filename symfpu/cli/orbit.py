@@ -48,7 +48,8 @@ from symfpu.dynamics.orbits import Orbit, integrate
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file, write_file, write_rows
-from symfpu.reports.tables import fifteen_digits, text_table
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.text_tables import text_table
 from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]

@@ -31,7 +31,7 @@ from symfpu.paper.claims_page import (
 )
 from symfpu.paper.side_by_side import TargetsFailed, side_by_side
 from symfpu.paper.targets import LONG_TARGETS, TARGETS, full_estimate, full_seconds_of
-from symfpu.reports.head import headed
+from symfpu.results.head import headed
 
 AGAIN = 5.0  # seconds between two lines of the same steps
 

@@ -28,7 +28,7 @@ from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.notebook import latex_lines
 from symfpu.numbers.typed import decimal
-from symfpu.reports.series import frequencies_record
+from symfpu.results.field import exact_by_seed
 from symfpu.saved.results import save
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.closed_forms import closed_form
@@ -187,7 +187,7 @@ def _record(found: Formula, latex: bool) -> dict[str, Any]:
         **series.chain.typed_law,
         **found.valid,
         "seeds": list(map(label_entry, series.seeds)),
-        "frequencies": frequencies_record(series),
+        "frequencies": None if series.frequencies is None else exact_by_seed(series.omega),
         "digits": series.digits,
         "name": found.name,
         "q": label_entry(found.q),

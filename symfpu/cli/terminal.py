@@ -37,7 +37,7 @@ from rich.text import Text
 
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
-from symfpu.reports.head import headed
+from symfpu.results.head import headed
 
 SEEDS = typer.Option("--seeds", help="Seed modes D_0, such as 1,2.", metavar="Q,Q,...")
 SAVED_SOLUTION = "A file written by symfpu solve, breather or refine -o."

@@ -14,6 +14,7 @@ captions of the paper.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from numbers import Real
 from os import PathLike
@@ -43,14 +44,15 @@ from symfpu.errors import InputError
 from symfpu.files.checkpoint import checkpoint_path, digest, seconds_between
 from symfpu.files.locking import one_run
 from symfpu.files.progress import Progress, unheard
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.tabled import Gridded
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, random_seed
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, chain_fields
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Gridded
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -78,7 +80,7 @@ class Slope:
 
 @public
 @dataclass(frozen=True, eq=False)
-class AlignmentIndices(Shown, Gridded):
+class AlignmentIndices(Gridded):
     """log10 GALI_k and Lyapunov exponent of an orbit in time (section 3.2, Fig. 1(e)).
 
     Made by `alignment_indices`; times are dimensionless, in units of the chain.
@@ -116,6 +118,38 @@ class AlignmentIndices(Shown, Gridded):
     def verdict(self) -> str:
         """That of `dimension()`: 'regular, dimension s', 'chaotic' or 'undecided'."""
         return self.dimension().verdict
+
+    def _fields(self) -> Iterator[Field]:
+        """`dimension` is None where nothing is decided, and in chaos."""
+        dimension = self.dimension()
+        yield from chain_fields(self.chain)
+        end = f"{self.times[-1]:.10g}"
+        yield Field("time", fifteen_digits(float(self.times[-1])), "to t", end)
+        yield Field("scheme", self.scheme.name)
+        yield Field("step", fifteen_digits(self.step))
+        slopes = {}
+        for slope in self.slopes():
+            value, error = fifteen_digits(slope.value), fifteen_digits(slope.error)
+            slopes[str(slope.k)] = {"value": value, "error": error}
+            shown = f"{slope.value:z.2f} \u00b1 {slope.error:.2f}"
+            yield Field("", label=f"slope of G_{slope.k}", shown=shown)
+        yield Field("slopes", slopes)
+        last = enumerate(self.log10_gali[-1].tolist(), start=2)
+        yield Field("log10_gali", {str(k): fifteen_digits(index) for k, index in last})
+        decided = dimension.value is not None
+        yield Field("dimension", dimension.value)
+        yield Field("dimension_error", fifteen_digits(dimension.error) if decided else None)
+        yield Field("supported_dimension", dimension.supported)
+        yield Field("dimension_by_frame", list(dimension.frames))
+        yield Field("verdict", dimension.verdict)
+        yield Field("reason", dimension.reason)
+        exponent = float(self.lyapunov[-1])
+        shown = f"{exponent:.2g}"
+        yield Field("lyapunov", fifteen_digits(exponent), "Lyapunov exponent", shown)
+        shown = f"{self.energy_error:.1g}"
+        yield Field(
+            "energy_error", fifteen_digits(self.energy_error), "energy error", shown
+        )
 
     def __repr__(self) -> str:
         model = self.chain.label

@@ -56,14 +56,15 @@ from symfpu.files.checkpoint import (
 from symfpu.files.interruption import kept_run
 from symfpu.files.locking import one_run
 from symfpu.files.progress import Progress, unheard
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.tabled import Gridded
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES, Numbers
 from symfpu.numbers.public import public
 from symfpu.numbers.room import require_room
 from symfpu.numbers.typed import double, integer
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, chain_fields, listed, shown_number
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Gridded
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -77,7 +78,7 @@ SAMPLE_BYTES = 100  # of a sample beside its modes
 
 @public
 @dataclass(frozen=True, eq=False)
-class Orbit(Shown, Gridded):
+class Orbit(Gridded):
     """An orbit, or several, at sampled times. Made by `integrate`; dimensionless.
 
     chain : the model. scheme : of the integrator, its coefficients. step : signed, as taken.
@@ -106,6 +107,30 @@ class Orbit(Shown, Gridded):
     energies: Floats = field(repr=False)
     averages: Floats | None = field(repr=False, default=None)
     seconds: float = field(repr=False, default=0.0)
+
+    def _answer(self) -> str:
+        return f"energy error {self.energy_error:.2g}"
+
+    def _fields(self) -> Iterator[Field]:
+        """Time averages are those at the end; energy is that of the first of several states."""
+        yield from chain_fields(self.chain)
+        if self.chain.periodic:  # in the order of the spectra
+            yield Field("modes", list(self.chain.mode_numbers))
+        step = f"{self.scheme.name}, step {abs(self.step):.6g}"
+        yield Field("scheme", self.scheme.name, "scheme", step)
+        yield Field("step", fifteen_digits(self.step))
+        end = f"{self.times[-1]:.10g}, {len(self.times)} samples"
+        yield Field("time", fifteen_digits(self.times[-1]), "to t", end)
+        yield Field("samples", len(self.times))
+        energies = self.energies[0].reshape(-1)
+        shown = listed(map(shown_number, energies[:3]))
+        yield Field("energy", repr(float(energies[0])), "energy H", shown)
+        yield Field("energy_error", fifteen_digits(self.energy_error))
+        average = None
+        if self.averages is not None and self.averages.ndim == 2:
+            average = [fifteen_digits(value) for value in self.averages[-1]]
+        yield Field("average_spectrum", average)
+        yield Field("seconds", round(self.seconds, 3))
 
     def __repr__(self) -> str:
         model = self.chain.label

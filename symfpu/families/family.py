@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
@@ -15,12 +15,7 @@ import numpy as np
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
 from symfpu.families.members import Event, Level, Member, members_grid
-from symfpu.families.normal_events import NormalEvent
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.table import joined
-from symfpu.frames.tabled import Gridded
-from symfpu.notebook import Shown
+from symfpu.families.normal_events import NormalEvent, event_fields
 from symfpu.numbers.counted import counted
 from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.numbers.public import public
@@ -29,6 +24,11 @@ from symfpu.refinement.conditions import frequency, ratio_conditions
 from symfpu.refinement.extrapolation import extrapolated
 from symfpu.refinement.refined_torus import Newton, refined_torus
 from symfpu.refinement.tori import refine
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, chain_fields, seeds_field
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.result import Gridded
+from symfpu.results.table import joined
 from symfpu.tori.energy import Energy
 from symfpu.tori.torus import Torus
 
@@ -64,7 +64,7 @@ class NotInFamily(SymfpuError):
 
 
 @dataclass(frozen=True, eq=False)
-class Family(Shown, Gridded):
+class Family(Gridded):
     """Tori of growing energy with one ratio of amplitudes or mode energies.
 
     Events tell what happens on the way. Made by `family`; dimensionless. Ours, or Appendix A.
@@ -93,6 +93,24 @@ class Family(Shown, Gridded):
     harmonic: bool = False
     energy_ratio: Mapping[int, float] | None = field(repr=False, default=None)
     normal_events: tuple[NormalEvent, ...] = ()
+
+    def _answer(self) -> str:
+        return f"it {self.ending}"
+
+    def _fields(self) -> Iterator[Field]:
+        yield from chain_fields(self.chain)
+        yield seeds_field(self.seeds)
+        yield Field("ending", self.ending)
+        energies = [m.energy for m in self.members]
+        span = f"{len(self.members)}, H = {min(energies):.6g} .. {max(energies):.6g}"
+        yield Field("members", [m.entry() for m in self.members], "members", span)
+        yield Field("events", [event.entry() for event in self.events])
+        counts = Counter(event.kind for event in self.events)
+        for kind in filter(counts.__getitem__, KINDS_OF_EVENTS):
+            yield Field("", label=f"events: {kind}", shown=str(counts[kind]))
+        if any(m.normal for m in self.members):
+            yield Field("normal_events", [event.entry() for event in self.normal_events])
+        yield from event_fields(self.normal_events)
 
     def __repr__(self) -> str:
         chain = self.chain.label

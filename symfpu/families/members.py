@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,14 +12,15 @@ import numpy as np
 from symfpu.breathers.floquet import Floquet, floquet
 from symfpu.breathers.from_rest import AVOIDED, FOLLOWED, NARROW, PASSED
 from symfpu.chain.chain import Chain
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.recorded import Recorded
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
 from symfpu.normal.frequencies import NormalFrequencies
 from symfpu.refinement.conditions import Condition, EnergyLevel
 from symfpu.refinement.refined_torus import Newton
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, exact_by_seed, fields_of, numbers_by_seed
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.numbers import fifteen_digits, number_text
+from symfpu.results.result import Result, Tabled
+from symfpu.results.table import Table
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
 
@@ -112,6 +113,27 @@ class Member(Tabled):
         """'torus', or 'doubtful' with the reasons in `warnings`."""
         return "doubtful" if self.warnings else "torus"
 
+    def entry(self) -> dict[str, Any]:
+        """For the record of a family, which has the chain and the seeds."""
+        found: dict[str, Any] = {
+            "energy": number_text(self.energy, None),
+            "harmonic_energy": number_text(self.harmonic_energy, None),
+            "frequencies": exact_by_seed(self.torus.omega),
+            "amplitudes": numbers_by_seed(self.amplitudes, self.torus.digits),
+            "residual": fifteen_digits(self.residual),
+            "verdict": self.verdict,
+            "warnings": list(self.warnings),
+        }
+        if self.multipliers is not None:
+            found["stable"] = self.multipliers.stable
+            found["largest_multiplier"] = fifteen_digits(self.multipliers.largest)
+        if self.normal is not None:
+            found["normal"] = self.normal.entry()
+        return found
+
+    def _fields(self) -> Iterator[Field]:
+        yield from fields_of(self.entry())
+
     def __repr__(self) -> str:
         by_seed = zip(self.torus.seeds, self.torus.frequencies, strict=True)
         rates = ", ".join(f"omega_{q}={float(w):.12g}" for q, w in by_seed)
@@ -184,7 +206,7 @@ def _normal_variables(members: Sequence[Member]) -> dict[str, Variable]:
 
 
 @dataclass(frozen=True)
-class Event(Recorded):
+class Event(Result):
     """Something on the way between two members of a family; dimensionless. Ours.
 
     after : the number of the first of the two.
@@ -210,6 +232,22 @@ class Event(Recorded):
     mode: int = 0
     harmonic: tuple[int, ...] = ()
     interpolated: bool = False
+
+    def entry(self) -> dict[str, Any]:
+        """For the record of a family; what it is of, by name and by mode and harmonic."""
+        return {
+            "event": self.kind,
+            "what": self.what,
+            "after": self.after,
+            "energy": number_text(self.energy, None),
+            "value": number_text(self.value, None),
+            "mode": self.mode or None,
+            "harmonic": list(self.harmonic) or None,
+            "interpolated": self.interpolated,
+        }
+
+    def _fields(self) -> Iterator[Field]:
+        yield from fields_of(self.entry())
 
     def __repr__(self) -> str:
         where = f"H = {self.energy:.10g}"

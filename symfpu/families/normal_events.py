@@ -15,9 +15,9 @@ that does not lead between them, by values of D on tori ever nearer to it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -32,7 +32,6 @@ from symfpu.families.normal_zeros import (
     located,
     zero_of,
 )
-from symfpu.frames.recorded import Recorded
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
 from symfpu.normal.meeting import Crossed, Lost, Meeting, NormalCondition
 from symfpu.normal.modes import NormalModes
@@ -46,6 +45,9 @@ from symfpu.normal.resonances import (
 from symfpu.normal.search import followed_modes
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.refined_torus import NoTorus
+from symfpu.results.field import Field, fields_of, numbers_by_seed
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Result
 from symfpu.tori.torus import Torus
 
 STABILITY, RESONANCE = "stability", "resonance"
@@ -58,9 +60,11 @@ ROUGH = 1e-6  # of the way, from which an event is said to be interpolated
 # where two frequencies are nearer than this, relative, D is not computed but interpolated
 LEAST_GAP = 5e-4
 
+MOST_SHOWN = 8  # events that readers see beside a picture
+
 
 @dataclass(frozen=True)
-class NormalEvent(Recorded):
+class NormalEvent(Result):
     """What normal frequencies do between two members of a family; dimensionless. Ours.
 
     kind : 'stability' (two normal frequencies meet and leave the real line, or come back), or
@@ -86,6 +90,22 @@ class NormalEvent(Recorded):
     begins: bool = False
     error: float = 0.0
 
+    def entry(self) -> dict[str, Any]:
+        """For the record of a family: what it is, and where."""
+        return {
+            "event": self.kind,
+            "resonance": self.resonance.entry(),
+            "after": self.after,
+            "part": fifteen_digits(self.part),
+            "amplitudes": numbers_by_seed(self.amplitudes, None),
+            "energy": repr(self.energy),
+            "begins": self.begins,
+            "error": fifteen_digits(self.error),
+        }
+
+    def _fields(self) -> Iterator[Field]:
+        yield from fields_of(self.entry())
+
     def __repr__(self) -> str:
         rough = self.error > ROUGH
         digits = ".3g" if rough else ".12g"
@@ -97,6 +117,12 @@ class NormalEvent(Recorded):
         if self.begins:
             return f"{what}, hyperbolic from {where}{note} on"
         return f"{what}, hyperbolic up to {where}{note}"
+
+
+def event_fields(events: Sequence[NormalEvent]) -> Iterator[Field]:
+    """The first events, as readers see them."""
+    for event in events[:MOST_SHOWN]:
+        yield Field("", label=event.kind, shown=repr(event))
 
 
 class Known(NamedTuple):

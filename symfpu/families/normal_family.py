@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,26 +10,39 @@ from typing import Any
 import numpy as np
 
 from symfpu.errors import InputError, RunInterrupted
-from symfpu.families.normal_events import RESONANCE_LENGTH, Known, NormalEvent, Stretch
+from symfpu.families.normal_events import (
+    RESONANCE_LENGTH,
+    Known,
+    NormalEvent,
+    Stretch,
+    event_fields,
+)
 from symfpu.families.normal_folder import KeptLine
 from symfpu.families.normal_line import Line
 from symfpu.files.progress import Progress, unheard
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.tabled import Gridded
 from symfpu.normal.frequencies import frequencies_of
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.resonances import resonance_length_of
 from symfpu.normal.torus import checked_modes, checked_solution
-from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, integer
+from symfpu.results.attributes import attributes
+from symfpu.results.field import (
+    Field,
+    chain_fields,
+    exact_by_seed,
+    numbers_by_seed,
+    seeds_field,
+)
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Gridded
 from symfpu.tori.torus import Torus
 
 
 @dataclass(frozen=True, eq=False)
-class NormalFamily(Shown, Gridded):
+class NormalFamily(Gridded):
     """Normal frequencies of tori on a line between two sets of amplitudes.
 
     Made by `normal_family`; dimensionless. Ours.
@@ -47,6 +60,17 @@ class NormalFamily(Shown, Gridded):
     members: tuple[NormalModes, ...] = field(repr=False)
     parts: tuple[float, ...] = field(repr=False)
     events: tuple[NormalEvent, ...]
+
+    def _fields(self) -> Iterator[Field]:
+        torus = self.members[0].torus
+        yield from chain_fields(torus.chain)
+        yield seeds_field(torus.seeds)
+        yield Field("verdict", self.verdict)
+        placed = zip(self.members, self.parts, strict=True)
+        members = [_member_entry(*pair) for pair in placed]
+        yield Field("members", members, "members", str(len(members)))
+        yield Field("events", [event.entry() for event in self.events])
+        yield from event_fields(self.events)
 
     def __repr__(self) -> str:
         chain = self.members[0].torus.chain.label
@@ -93,6 +117,16 @@ class NormalFamily(Shown, Gridded):
             attributes=attributes(self, torus.chain, seeds=torus.seeds),
             rows=each,
         )
+
+
+def _member_entry(found: NormalModes, part: float) -> dict[str, Any]:
+    """A member of a line; its chain and seeds are those of the line."""
+    return {
+        "part": fifteen_digits(part),
+        "amplitudes": numbers_by_seed(found.torus.amplitudes, None),
+        "frequencies": exact_by_seed(found.torus.omega),
+        **frequencies_of(found, {}).entry(),
+    }
 
 
 @public

@@ -6,6 +6,7 @@ orbits the gaps drift, and how much they do shows how far the orbit is from an i
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -15,14 +16,10 @@ from numpy.typing import ArrayLike
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Columns, Table
-from symfpu.frames.tabled import Tabled
 from symfpu.integrable.coupling import gap_numbers, toda_coupling
 from symfpu.integrable.curve import SpectralCurve
 from symfpu.integrable.discriminant import Edges
 from symfpu.integrable.lax import jacobi_entries, odd_edges, ring_edges
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     DOUBLES,
     MULTIPRECISION,
@@ -32,13 +29,17 @@ from symfpu.numbers.arithmetic import (
 )
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, integer
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, shown_number
+from symfpu.results.result import Tabled
+from symfpu.results.table import Columns, Table
 
 MOST_DIGITS = 10000
 LARGEST_EXPONENT = 300.0  # of e^(a r): beyond it the edges of bands are out of range
 
 
 @dataclass(frozen=True)
-class TodaInvariants(Shown, Tabled):
+class TodaInvariants(Tabled):
     """The gaps of a state, its actions and frequencies in the Toda chain; see `toda_invariants`.
 
     N, a, digits : as asked, a exact. modes : q in the order of the arrays. gaps, actions,
@@ -63,6 +64,15 @@ class TodaInvariants(Shown, Tabled):
     gaps: Numbers
     actions: Numbers
     frequencies: Numbers
+
+    def _fields(self) -> Iterator[Field]:
+        yield from super()._fields()
+        yield Field("", label="chain", shown=f"N={self.N}, a={decimal(self.a)}")
+        for label, value in (
+            ("widest gap", max(self.gaps)),
+            ("sum of actions", sum(self.actions)),
+        ):
+            yield Field("", label=label, shown=shown_number(value, self.digits))
 
     def __repr__(self) -> str:
         place = int(np.argmax(self.gaps))

@@ -22,9 +22,6 @@ import numpy as np
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Columns, Table
-from symfpu.frames.tabled import Tabled
 from symfpu.integrable.coupling import gap_numbers, toda_coupling
 from symfpu.integrable.curve import SpectralCurve
 from symfpu.integrable.discriminant import Edges
@@ -33,6 +30,9 @@ from symfpu.integrable.search import Found, Search, guard_digits
 from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, with_digits
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, exact, integer
+from symfpu.results.attributes import attributes
+from symfpu.results.result import Tabled
+from symfpu.results.table import Columns, Table
 
 MOST_DIGITS = 10000
 SMALLEST_RING = 3  # particles: of two the mean stretch of both bonds is one number

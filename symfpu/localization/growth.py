@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Columns, Table, joined
-from symfpu.frames.tabled import Tabled
 from symfpu.localization.profiles import energy_record
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import double, seed_modes
+from symfpu.results.attributes import attributes
+from symfpu.results.result import Tabled
+from symfpu.results.table import Columns, Table, joined
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -7,7 +7,7 @@ profiles.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
@@ -19,13 +19,14 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.recorded import Recorded
-from symfpu.frames.table import Columns, Table
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import DOUBLES
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, seed_modes
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Result, Tabled
+from symfpu.results.table import Columns, Table
 
 Floats = NDArray[np.float64]
 
@@ -39,7 +40,7 @@ LEAST_GROUPS = 2  # of modes, for a line with an error bar
 
 
 @dataclass(frozen=True)
-class ProfileLine(Recorded):
+class ProfileLine(Result):
     """log10 e_kappa = slope * kappa + intercept + power * log10 kappa, with kappa = q/N.
 
     Call it with kappa, a number or an array, for log10 e_kappa in its shape.
@@ -61,6 +62,9 @@ class ProfileLine(Recorded):
         kappa = DOUBLES.array(kappa)
         bend = self.power * np.log10(kappa) if self.power else 0.0
         return np.asarray(self.slope * kappa + self.intercept + bend)
+
+    def _fields(self) -> Iterator[Field]:
+        yield from (Field(name, fifteen_digits(x)) for name, x in vars(self).items())
 
     def __repr__(self) -> str:
         intercept = _signed(self.intercept)

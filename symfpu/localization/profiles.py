@@ -10,7 +10,7 @@ the orbit from `torus.Q(0)` and `torus.P(0)`.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,10 +19,12 @@ from numpy.typing import ArrayLike, NDArray
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
-from symfpu.frames.recorded import Recorded
 from symfpu.numbers.arithmetic import DOUBLES
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, seed_modes
+from symfpu.results.field import Field
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.result import Result
 
 Floats = NDArray[np.float64]
 SHARES = ("energy", "amplitude")
@@ -142,7 +144,7 @@ def normalised_averages(orbit: Orbit) -> Floats:
 
 
 @dataclass(frozen=True)
-class ProfileDistance(Recorded):
+class ProfileDistance(Result):
     """How far two spectra differ. Made by `profile_distance`. Ours.
 
     distance : largest |log10(a_q/b_q)|, in decades. mode : where it is reached. modes : how many
@@ -155,6 +157,11 @@ class ProfileDistance(Recorded):
     distance: float
     mode: int
     modes: int
+
+    def _fields(self) -> Iterator[Field]:
+        yield Field("distance", fifteen_digits(self.distance), "distance")
+        yield Field("mode", self.mode, "mode")
+        yield Field("modes", self.modes, "modes")
 
     def __repr__(self) -> str:
         largest = f"{self.distance:.4g} decades at mode {self.mode}"

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.errors import InputError, SymfpuError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
 from symfpu.localization.profiles import energy_record
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
+from symfpu.results.attributes import attributes
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 
 Floats = NDArray[np.float64]
 # of the largest distance: apart, so that wiggles do not cross both

@@ -18,9 +18,6 @@ from symfpu.chain.chain import Chain, require_chain
 from symfpu.dynamics.averages import LOOK
 from symfpu.dynamics.orbits import integrate
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
 from symfpu.localization.laws import (
     FLOOR,
     ProfileFit,
@@ -33,6 +30,9 @@ from symfpu.localization.profiles import fpu_trajectory, packet_amplitudes
 from symfpu.numbers.arithmetic import DOUBLES
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, exact, integer, random_seed
+from symfpu.results.attributes import attributes
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 
 Floats = NDArray[np.float64]
 # times the expected rounding noise: what noise adds to log10 e is 0.04 there

@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from symfpu.normal.modes import NoNormalModes, NormalModes
+from symfpu.normal.modes import NoNormalModes, NormalModes, sigma_entry
 from symfpu.normal.resonances import LOCKED, ParametricResonance
 from symfpu.normal.torus import LENGTH, resonances_near
+from symfpu.results.numbers import fifteen_digits
 from symfpu.tori.torus import Torus
 
 KEPT_RESONANCES = 10  # the nearest
@@ -35,6 +36,20 @@ class NormalFrequencies:
     residual: float
     resonances: tuple[ParametricResonance, ...] = field(repr=False)
     missing: Mapping[int, str] = field(default_factory=dict)
+
+    def entry(self) -> dict[str, Any]:
+        """For the record of a member of a family."""
+        return {
+            "verdict": self.verdict,
+            "stable": self.stable,
+            "growth": fifteen_digits(self.growth),
+            "normal_frequencies": {
+                str(q): sigma_entry(w) for q, w in self.frequencies.items()
+            },
+            "signatures": {str(q): n for q, n in self.signatures.items()},
+            "residual": fifteen_digits(self.residual),
+            "missing": {str(q): why for q, why in self.missing.items()},
+        }
 
     def __repr__(self) -> str:
         known = "".join(f", sigma_{q}={_text(w)}" for q, w in self.frequencies.items())

@@ -8,6 +8,7 @@ from Omega_q at rest: the largest coefficient of p is that of mode q without any
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -17,14 +18,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from symfpu.errors import InputError, SymfpuError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.tabled import Gridded
 from symfpu.normal.resonances import ParametricResonance
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, text, with_digits
 from symfpu.numbers.public import public
 from symfpu.refinement.lattice import Floats, Ints
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, chain_fields, exact_by_seed, seeds_field
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.numbers import fifteen_digits, number_text
+from symfpu.results.result import Gridded
 from symfpu.tori.torus import Torus
 
 ELLIPTIC, HYPERBOLIC = "elliptic", "hyperbolic"
@@ -174,9 +176,19 @@ class NormalMode:
         return np.asarray(np.exp(1j * angles) @ self.in_doubles().coefficients)
 
 
+MOST_SHOWN = 8  # normal frequencies that readers see beside a picture
+NEAREST = 10  # resonances in a record
+
+
+def sigma_entry(sigma: Any, digits: int | None = None) -> str | list[str]:
+    """A normal frequency in a record: a real one as text, a complex one as [re, im]."""
+    real = number_text(sigma.real, digits)
+    return [real, number_text(sigma.imag, digits)] if sigma.imag else real
+
+
 @public
 @dataclass(frozen=True, eq=False)
-class NormalModes(Shown, Gridded):
+class NormalModes(Gridded):
     """Normal frequencies of a torus, and its resonances. Made by `normal_modes`; ours.
 
     torus : the torus. modes : NormalMode of each direction, by growing q. guesses : by q, of the
@@ -203,6 +215,34 @@ class NormalModes(Shown, Gridded):
     resonances: tuple[ParametricResonance, ...] = field(repr=False)
     undecided: tuple[int, ...] = field(default=(), repr=False)
     missing: dict[int, str] = field(default_factory=dict, repr=False)
+
+    def _fields(self) -> Iterator[Field]:
+        """Real frequencies are texts, complex ones [re, im]."""
+        torus, digits = self.torus, self.digits
+        yield from chain_fields(torus.chain)
+        yield seeds_field(torus.seeds)
+        yield Field("frequencies", exact_by_seed(torus.omega))
+        yield Field("verdict", self.verdict)
+        yield Field("stable", self.stable)
+        yield Field("undecided", list(self.undecided))
+        yield Field("missing", {str(q): why for q, why in self.missing.items()})
+        yield Field("growth", fifteen_digits(float(self.growth)))
+        sigma = {str(q): sigma_entry(w, digits) for q, w in self.frequencies.items()}
+        yield Field("normal_frequencies", sigma)
+        for mode in self.modes[:MOST_SHOWN]:
+            name = f"\N{GREEK SMALL LETTER SIGMA} of mode {mode.mode}"
+            yield Field("", label=name, shown=mode.text)
+        signatures = {str(mode.mode): mode.signature for mode in self.modes}
+        yield Field("signatures", signatures)
+        nearest = self.resonances[:NEAREST]
+        yield Field("resonances", [one.entry() for one in nearest])
+        for one in nearest[:1]:
+            yield Field("", label="nearest resonance", shown=repr(one))
+        residual = float(self.residual)
+        yield Field("residual", fifteen_digits(residual), "residual", f"{residual:.2g}")
+        yield Field("digits", digits)
+        if digits is not None:
+            yield Field("frequency_error", number_text(self.error, 3))
 
     def __repr__(self) -> str:
         torus = self.torus

@@ -23,13 +23,13 @@ from symfpu.chain.frequency_shift import frequency_shift_formula
 from symfpu.chain.symbols import amplitude_symbol
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table, joined
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, with_digits
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, exact, integer, order_of
+from symfpu.results.attributes import attributes
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table, joined
 from symfpu.series.arguments import digits_of
 from symfpu.series.divisors import SmallDivisor
 from symfpu.series.fixed_point import fixed_point_series

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from math import comb
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from symfpu.numbers.public import public
 from symfpu.numbers.room import require_room
 from symfpu.numbers.typed import integer
 from symfpu.refinement.lattice import Ints, dilated
+from symfpu.results.numbers import fifteen_digits
 from symfpu.tori.torus import Torus
 
 
@@ -62,6 +63,15 @@ class ParametricResonance:
     modes: tuple[int, ...]
     harmonic: tuple[int, ...]
     distance: float
+
+    def entry(self) -> dict[str, Any]:
+        """For a record."""
+        return {
+            "resonance": self.kind,
+            "modes": list(self.modes),
+            "harmonic": list(self.harmonic),
+            "distance": fifteen_digits(self.distance),
+        }
 
     def __repr__(self) -> str:
         return f"{self.condition}, off by {self.distance:.3g}"

@@ -11,8 +11,9 @@ from typing import Any
 
 from symfpu.figures.drawing import draw_panel
 from symfpu.figures.panels import Panel
+from symfpu.files.writing import write_rows
 from symfpu.paper.claims import VERDICTS, Claim, PaperFigure
-from symfpu.reports.tables import markdown_table, write_csv
+from symfpu.results.text_tables import markdown_table
 
 
 def figure_markdown(figure: PaperFigure) -> str:
@@ -79,7 +80,12 @@ def _curve_names(panel: Panel) -> list[str]:
 
 def write_panel_csv(figure: PaperFigure, folder: Path) -> list[Path]:
     """The table of each panel, one file each."""
-    return write_csv({panel.name: panel.table() for panel in figure.panels}, folder)
+    paths = []
+    for panel in figure.panels:
+        header, rows = panel.table()
+        paths.append(folder / f"{panel.name}.csv")
+        write_rows(paths[-1], [header, *rows])
+    return paths
 
 
 def draw_panels(figure: PaperFigure, folder: Path) -> list[Path]:

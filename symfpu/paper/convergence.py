@@ -19,7 +19,8 @@ from symfpu.paper.claims import PaperFigure
 from symfpu.paper.convergence_claims import convergence_claims
 from symfpu.paper.convergence_fig1 import CancellationStudy, cancellation_study
 from symfpu.paper.convergence_fig9 import BreatherStudy, SchemeLimit, breather_study
-from symfpu.reports.tables import fifteen_digits, markdown_table
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.text_tables import markdown_table
 from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment
 

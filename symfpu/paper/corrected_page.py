@@ -17,7 +17,8 @@ from symfpu.paper.corrected import LEAST_DIGITS, LIMIT, CorrectedRow
 from symfpu.paper.series_errors import Decay, ScalingStudy, SeriesErrors
 from symfpu.paper.table import rounds_to
 from symfpu.refinement.refined_torus import Newton
-from symfpu.reports.tables import fifteen_digits, markdown_table
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.text_tables import markdown_table
 from symfpu.tori.torus import Torus
 
 ErrorsByLabel = Mapping[str, Mapping[int, float]]

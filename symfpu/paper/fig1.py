@@ -23,7 +23,8 @@ from symfpu.paper.fig1_data import Figure1, figure1_data
 from symfpu.paper.judgements import sums_panel
 from symfpu.paper.printed import FIG1_CLAIMS
 from symfpu.refinement.tori import refine
-from symfpu.reports.tables import fifteen_digits, markdown_table
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.text_tables import markdown_table
 
 Floats = NDArray[np.float64]
 ERRORS_BOTTOM = 1e-8  # of the picture: errors of rounding at its beginning are below

@@ -15,7 +15,7 @@ from symfpu.figures.panels import Curve, Panel
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.paper.claims import Claim, PaperFigure, judged
 from symfpu.paper.printed import FIG6_CHAIN, FIG6_WIDTH
-from symfpu.reports.tables import markdown_table
+from symfpu.results.text_tables import markdown_table
 from symfpu.tori.at_energy import series_at_energy
 from symfpu.tori.energy import Energy
 from symfpu.tori.orders import Orders

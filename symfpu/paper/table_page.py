@@ -20,7 +20,7 @@ from symfpu.paper.series_errors import ScalingStudy, scaling_study
 from symfpu.paper.table import AmplitudeRow, amplitude_table
 from symfpu.paper.table_claims import table_claims
 from symfpu.reports.solution import solution_record
-from symfpu.reports.tables import markdown_table
+from symfpu.results.text_tables import markdown_table
 
 SCALED_ROWS = ("Fig. 1", "Fig. 7")  # whose errors are followed to smaller mu
 SHORT_HISTORY = 30  # orders; of a longer one some are shown

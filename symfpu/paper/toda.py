@@ -29,7 +29,8 @@ from symfpu.paper.toda_tori import (
     group_study,
     torus_studies,
 )
-from symfpu.reports.tables import fifteen_digits, markdown_table
+from symfpu.results.numbers import fifteen_digits
+from symfpu.results.text_tables import markdown_table
 
 SHOWN_RATIOS = (12, 18, 24, 30)
 SHOWN_GAPS = (0, 1, 2, 3, 4, 7, 10, 13, 16)  # places of the modes in the table of gaps

@@ -18,7 +18,7 @@ from symfpu.localization.packet_sums import packet_energies
 from symfpu.localization.trials import ProfileInvariance, middle_halves
 from symfpu.paper.claims import Claim, judged
 from symfpu.paper.printed import PrintedLine
-from symfpu.reports.tables import markdown_table
+from symfpu.results.text_tables import markdown_table
 
 Floats = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 import json
 import random
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -27,13 +27,13 @@ from symfpu.chain.propagation import coupled_modes, excitation_sequence
 from symfpu.errors import InputError, SymfpuError, VanishingResidue
 from symfpu.files.progress import Progress
 from symfpu.files.writing import write_text
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Columns, Table, joined
-from symfpu.frames.tabled import Tabled
-from symfpu.notebook import Shown
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, integer_between, length_of, order_of, seed_modes
 from symfpu.proofs.seed_sums import modes_of_one_parity
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, fields_of, listed
+from symfpu.results.result import Tabled
+from symfpu.results.table import Columns, Table, joined
 from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.force import force_numbers
 from symfpu.series.lindstedt import lindstedt
@@ -44,6 +44,8 @@ from symfpu.series.series import LindstedtSeries
 
 FORMAT = "symfpu propagation certificate"
 SCHEMA, POTENTIALS = 1, 2  # of alpha and beta, of other potentials
+# of a certificate: what is evidence
+EVIDENCE = ("excited", "vanishing", "points", "coefficients", "digest")
 SINGLE = ("alpha", "beta")  # models of one coupling, for which the rule is stated
 MOST_POINTS = 1000  # of independent primes and frequencies; each is a run of the recursion
 ATTEMPTS = 50  # points tried before giving up on vanishing divisors
@@ -127,7 +129,7 @@ class RuleException:
 
 @public
 @dataclass(frozen=True)
-class PropagationProof(Shown, Tabled):
+class PropagationProof(Tabled):
     """The Proposition's D_k beside the actual ones up to an order, and everything that shows it.
 
     Made by `prove_propagation`.
@@ -164,6 +166,19 @@ class PropagationProof(Shown, Tabled):
     excited: tuple[Witness, ...] = field(repr=False)
     vanishing: tuple[Vanishing, ...] = field(repr=False)
     potential: Potential | None = None
+
+    def _fields(self) -> Iterator[Field]:
+        """The certificate without the evidence, and what kind of evidence that is."""
+        yield Field("", label="chain", shown=f"N={self.N}, {self.model}")
+        yield Field("", label="seeds", shown=listed(self.seeds))
+        known = self.certificate()
+        yield from fields_of({key: known[key] for key in known if key not in EVIDENCE})
+        yield Field("reason", self.reason)
+        for k, modes in enumerate(self.actual):
+            yield Field("", label=f"D_{k}", shown=listed(modes) or "none")
+        for odd in self.exceptions:
+            shown = f"predicted {odd.predicted}, actually {odd.actual}"
+            yield Field("", label=f"mode {odd.mode}", shown=shown)
 
     def __repr__(self) -> str:
         seeds = ",".join(map(str, self.seeds))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, field
 from itertools import combinations
@@ -19,13 +19,20 @@ from symfpu.chain.potentials.potential import Potential
 from symfpu.chain.propagation import coupling_sequence
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Columns, Table, joined
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, length_of, order_of
-from symfpu.proofs.certificates import law_name, prove_propagation, proved_chain
+from symfpu.proofs.certificates import (
+    SINGLE,
+    RuleException,
+    law_name,
+    prove_propagation,
+    proved_chain,
+)
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field
+from symfpu.results.result import Tabled, table_fields
+from symfpu.results.table import Columns, Table, joined
 from symfpu.sweeps.rows import SweepFailure, SweepRow
 from symfpu.sweeps.sweep import SweepStopped, sweep
 
@@ -46,6 +53,17 @@ class SweepCase:
     verdict: str
     exceptions: tuple[tuple[int, int | None, int | None], ...]
     corrected_rule_holds: bool
+
+    def entry(self) -> dict[str, Any]:
+        """For a record; its exceptions as those of a proof."""
+        exceptions = [RuleException(*entry).record() for entry in self.exceptions]
+        return {
+            "N": self.N,
+            "seeds": list(self.seeds),
+            "verdict": self.verdict,
+            "exceptions": exceptions,
+            "corrected_rule_holds": self.corrected_rule_holds,
+        }
 
 
 @dataclass(frozen=True)
@@ -71,6 +89,17 @@ class Sweep(Tabled):
     model: str
     order: int
     cases: tuple[SweepCase, ...] = field(repr=False)
+
+    def _fields(self) -> Iterator[Field]:
+        """How many seed sets, those in which the Proposition fails, and all by column."""
+        law = "model" if self.model in SINGLE else "potential"
+        yield Field(law, self.model, "chain")
+        yield Field("order", self.order, "order")
+        yield Field("cases", len(self.cases), "seed sets")
+        failing = [case.entry() for case in self.exceptions]
+        yield Field("exceptions", failing, "exceptions", str(len(failing)))
+        (columns,) = (x for x in table_fields(self._table(), set()) if x.key == "columns")
+        yield columns
 
     def __repr__(self) -> str:
         count = Counter(case.verdict for case in self.cases)

@@ -18,9 +18,6 @@ import numpy as np
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
 from symfpu.files.writing import write_text
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Columns, Table
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, length_of, order_of, seed_modes
 from symfpu.proofs.decided_file import DecidedFile
@@ -28,6 +25,11 @@ from symfpu.proofs.every_length import DecidedFlat, decided_flat
 from symfpu.proofs.families import equation_text, mode_text
 from symfpu.proofs.flats import MOST_SEEDS, Arrangement, Flat, degree_of, flats, last_order
 from symfpu.proofs.seed_sums import without_odd_sums
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field
+from symfpu.results.numbers import json_value
+from symfpu.results.result import Tabled
+from symfpu.results.table import Columns, Table
 from symfpu.sweeps.workers import executor_of
 
 FORMAT, SCHEMA = "symfpu rule for all N certificate", 2
@@ -78,6 +80,19 @@ class RuleForAllN(Tabled):
     order: int
     verdict: str
     decided: tuple[DecidedFlat, ...] = field(repr=False)
+
+    def _fields(self) -> Iterator[Field]:
+        """The theorem, and every family of seed sets that it excepts."""
+        exceptional = [json_value(vars(flat)) for flat in self.exceptional_flats]
+        yield Field("model", self.model, "model")
+        yield Field("seeds_number", self.seeds_number, "seeds")
+        yield Field("order", self.order, "order")
+        yield Field("verdict", self.verdict)
+        yield Field("reason", self.reason, "reason")
+        yield Field("theorem", self.theorem)
+        yield Field("flats", self.flats, "flats")
+        yield Field("exceptional_flats", exceptional, "exceptional", str(len(exceptional)))
+        yield Field("gaps", [[found.flat.N, *found.flat.seeds] for found in self.gaps])
 
     def __repr__(self) -> str:
         seeds = f"{self.seeds_number} seed" + "s" * (self.seeds_number > 1)

@@ -9,6 +9,7 @@ harmonics of a box a quarter larger says which are missing.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -44,6 +45,8 @@ from symfpu.refinement.lattice import Floats, Ints, canonical_signs, places_of
 from symfpu.refinement.newton import Correction
 from symfpu.refinement.prescribed import Prescribed
 from symfpu.refinement.refinement_file import Keep, Reached, RefinementFile, no_file
+from symfpu.results.field import Field
+from symfpu.results.numbers import number_text
 from symfpu.tori.torus import Origin, Torus
 
 MOST_DIGITS = 1000
@@ -89,6 +92,10 @@ class IterativeRefinement(Origin):
     bound: Any
     error: Any
     sweeps: int
+
+    def fields(self, torus: Torus) -> Iterator[Field]:
+        yield Field("residual_bound", number_text(self.bound, 3))
+        yield Field("coefficient_error", number_text(self.error, 3))
 
     def quality(self, torus: Torus) -> str:
         return f"residual below {mpmath.nstr(self.bound, 2)}"

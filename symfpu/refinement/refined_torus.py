@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -21,6 +21,8 @@ from symfpu.refinement.newton import GROWTH, Iterate, NewtonStep
 from symfpu.refinement.resonances import NearResonance, near_resonances
 from symfpu.refinement.search import Search
 from symfpu.refinement.umklapp import driven_in_resonance
+from symfpu.results.field import Field
+from symfpu.results.numbers import fifteen_digits
 from symfpu.tori.best_order import best_order
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Origin, Torus, comes_from
@@ -61,6 +63,16 @@ class Newton(Origin):
 
     steps: tuple[NewtonStep, ...]
     near_resonances: tuple[NearResonance, ...]
+
+    def fields(self, torus: Torus) -> Iterator[Field]:
+        steps = []
+        for step in self.steps:
+            residual, change = fifteen_digits(step.residual), fifteen_digits(step.change)
+            steps.append({"residual": residual, "change": change, "products": step.krylov})
+        yield Field("energy_error", fifteen_digits(energy_spread(torus)))
+        yield Field("newton", steps)
+        yield Field("smallest_divisors", [near.entry() for near in self.near_resonances])
+        yield Field("verdict", "doubtful" if torus.warnings else "torus")
 
     def facts(self) -> tuple[str, ...]:
         return tuple(f"smallest divisor {nearest}" for nearest in self.near_resonances[:1])
@@ -197,3 +209,12 @@ def _result(
         travels=torus.travels,
         origin=Newton(found.steps, near_resonances(equation, found.cosines, found.shifts)),
     )
+
+
+def energy_spread(torus: Torus, periods: int = 25, points: int = 100) -> float:
+    """Largest relative change of H along the orbit over some periods of the slowest seed."""
+    slowest = min(float(w) for w in torus.frequencies)
+    period = 2 * np.pi / slowest
+    times = np.linspace(0, periods * period, points)
+    energies, start = torus.energy(times), torus.energy()
+    return float(np.abs((energies - start) / start).max())

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats
+from symfpu.results.numbers import fifteen_digits
 
 SHOWN_DIVISORS = 10
 
@@ -23,6 +25,15 @@ class NearResonance:
     harmonic: tuple[int, ...]
     divisor: float
     coefficient: float
+
+    def entry(self) -> dict[str, Any]:
+        """For a record."""
+        return {
+            "size": fifteen_digits(self.divisor),
+            "mode": self.mode,
+            "harmonic": list(self.harmonic),
+            "coefficient": fifteen_digits(self.coefficient),
+        }
 
     def __repr__(self) -> str:
         harmonic = ",".join(map(str, self.harmonic))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.action_angle.twist import Twist
-from symfpu.reports.series import frequencies_record
-from symfpu.reports.tables import fifteen_digits, number_text
+from symfpu.results.field import exact_by_seed
+from symfpu.results.numbers import number_text
 from symfpu.tori.torus import Torus
 
 PLACES = 12  # digits of doubles in lines for a reader
@@ -16,9 +16,9 @@ def actions_record(
     solution: Torus, by_angle: dict[int, Any], found: Twist | None
 ) -> dict[str, Any]:
     """What the verb prints: the twist with exact frequencies, or the actions alone."""
-    frequencies = frequencies_record(solution)
+    frequencies = exact_by_seed(solution.omega)
     if found is not None:
-        return twist_record(found) | {"frequencies": frequencies}
+        return found.record() | {"frequencies": frequencies}
     digits = solution.digits
     return {
         "kind": "actions",
@@ -28,33 +28,6 @@ def actions_record(
         "digits": digits,
         "actions": {str(q): number_text(x, digits) for q, x in by_angle.items()},
     }
-
-
-def twist_record(found: Twist) -> dict[str, Any]:
-    """A twist for JSON, with the actions of the torus that it is of."""
-    places = found.digits
-    rows = [[number_text(x, places) for x in row] for row in found.matrix]
-    return {
-        "kind": type(found).__name__,
-        **found.chain.typed,
-        "seeds": list(found.seeds),
-        "frequencies": _by_seed(found, found.frequencies),
-        "digits": places,
-        "actions": _by_seed(found, found.actions),
-        "twist": rows,
-        "twist_method": found.method,
-        "asymmetry": fifteen_digits(found.asymmetry),
-        "eigenvalues": [number_text(x, places) for x in found.eigenvalues],
-        "signature": list(found.signature),
-        "definiteness": found.definiteness,
-        "determinant": number_text(found.determinant, places),
-        "isoenergetic_determinant": number_text(found.isoenergetic_determinant, places),
-    }
-
-
-def _by_seed(found: Twist, values: Any) -> dict[str, str]:
-    numbers = zip(found.seeds, values, strict=True)
-    return {str(q): number_text(x, found.digits) for q, x in numbers}
 
 
 def actions_text(record: dict[str, Any]) -> str:

@@ -8,55 +8,12 @@ from typing import Any
 
 from symfpu.borders.atlas import Atlas, AtlasBorder
 from symfpu.borders.laws import BorderLaw
-from symfpu.reports.tables import fifteen_digits, number_text, text_table
+from symfpu.results.text_tables import text_table
 
 Json = dict[str, Any]
 
 BORDER_HEAD = ("N", "packet", "order", "border", "H", "H/N", "what ends it")
 LAW_HEAD = ("packet", "border", "H goes as", "N", "between neighbours")
-
-
-def atlas_record(found: Atlas) -> Json:
-    """What all columns share, every border, the power laws, and the columns that failed."""
-    laws = found.laws.items()
-    return {
-        "fixed": dict(found.rows.fixed),
-        "cases": len(found.rows.rows),
-        "points": found.points,
-        "borders": [_border_record(border) for border in found.borders],
-        "laws": [_named_law(*key, law) for key, law in laws],
-        "failures": [
-            {"case": row.case, "reason": str(row.failure)} for row in found.rows.failures
-        ],
-    }
-
-
-def law_record(law: BorderLaw) -> Json:
-    """The exponent with its error and what was fitted."""
-    return {
-        "factor": fifteen_digits(law.factor),
-        "exponent": fifteen_digits(law.exponent),
-        "error": fifteen_digits(law.error),
-        "local": [fifteen_digits(x) for x in law.local],
-        "lengths": list(law.lengths),
-        "energies": [number_text(H, None) for H in law.energies],
-    }
-
-
-def _border_record(border: AtlasBorder) -> Json:
-    return {
-        "chain": dict(border.chain),
-        "packet": border.packet,
-        "modes": list(border.modes),
-        "order": border.order,
-        "border": border.border,
-        "energy": None if border.energy is None else number_text(border.energy, None),
-        "details": dict(border.details),
-    }
-
-
-def _named_law(model: str, packet: str, border: str, law: BorderLaw) -> Json:
-    return {"model": model, "packet": packet, "border": border} | law_record(law)
 
 
 def atlas_text(found: Atlas) -> Iterator[str]:

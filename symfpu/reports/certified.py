@@ -2,65 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import mpmath
 
 from symfpu.certified.residual import ResidualProof
 from symfpu.certified.stay import StayProof
 from symfpu.numbers.one_sided import above
-from symfpu.numbers.typed import decimal
-from symfpu.reports.tables import fifteen_digits
 
 SHOWN_DIGITS = 15
-
-
-def residual_proof_record(proof: ResidualProof) -> dict[str, Any]:
-    """Keys of the command line; bounds are texts, as they may be below all doubles."""
-    return _head(proof) | {
-        "bound": _text(proof.bound),
-        "relative": _text(proof.relative),
-        "energy": None if proof.energy is None else str(proof.energy),
-        "energy_radius": None if proof.energy is None else _text(proof.energy_radius),
-    }
-
-
-def stay_record(proof: StayProof) -> dict[str, Any]:
-    """The same with the time, the distances and what they follow from."""
-    return _head(proof) | {
-        "bound": _text(proof.bound),
-        "time": decimal(proof.time),
-        "distance": _text(proof.distance),
-        "momentum": _text(proof.momentum),
-        "drift": {str(q): _text(x) for q, x in proof.drift.items()},
-        "longest": fifteen_digits(proof.longest),
-        "sigma": {str(q): fifteen_digits(x) for q, x in proof.sigma.items()},
-        "bounds": {
-            "residual": _text(proof.growth.terms[0]),
-            "frame": fifteen_digits(proof.frame),
-            "curvature": fifteen_digits(proof.curvature),
-            "room": fifteen_digits(proof.room),
-        },
-    }
-
-
-def _head(proof: ResidualProof | StayProof) -> dict[str, Any]:
-    pairs = zip(proof.seeds, proof.frequencies, strict=True)
-    return {
-        "kind": type(proof).__name__,
-        **proof.chain.typed,
-        "seeds": list(proof.seeds),
-        "frequencies": {str(q): decimal(w) for q, w in pairs},
-        "proved": True,
-        "theorem": proof.theorem,
-        "harmonics": proof.harmonics,
-        "digits": proof.digits,
-    }
-
-
-def _text(x: Any) -> str:
-    number = mpmath.mpf(x.numerator) / x.denominator if hasattr(x, "numerator") else x
-    return str(mpmath.nstr(number, SHOWN_DIGITS))
 
 
 def residual_proof_text(proof: ResidualProof) -> str:

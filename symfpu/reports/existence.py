@@ -2,45 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import mpmath
-
 from symfpu.certified.existence import ExistenceProof
 from symfpu.numbers.one_sided import above, below
-from symfpu.numbers.typed import decimal
-from symfpu.reports.tables import fifteen_digits
-
-
-def existence_record(proof: ExistenceProof) -> dict[str, Any]:
-    """Keys of the command line; A and H are the middles of intervals."""
-    digits = proof.digits + 3
-    return {
-        "kind": type(proof).__name__,
-        **proof.chain.typed,
-        "seeds": [proof.seed],
-        "frequencies": {str(proof.seed): decimal(proof.frequency)},
-        "frequency_radius": fifteen_digits(proof.frequency_radius),
-        "proved": True,
-        "theorem": proof.theorem,
-        "fixed": proof.fixed,
-        "value": decimal(proof.value),
-        "half_width": decimal(proof.half_width),
-        "radius": fifteen_digits(proof.radius),
-        "unique": fifteen_digits(proof.unique),
-        "nu": str(proof.nu),
-        "amplitudes": {str(proof.seed): mpmath.nstr(proof.amplitude, digits)},
-        "amplitude_radius": fifteen_digits(proof.amplitude_radius),
-        "energy": mpmath.nstr(proof.energy, digits),
-        "energy_radius": fifteen_digits(proof.energy_radius),
-        "bounds": {
-            "Y": fifteen_digits(proof.residual),
-            "Z1": fifteen_digits(proof.linear),
-            "Z2": fifteen_digits(proof.curvature),
-        },
-        "harmonics": proof.harmonics,
-        "block": proof.block,
-    }
 
 
 def existence_text(proof: ExistenceProof) -> str:

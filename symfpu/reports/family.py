@@ -4,59 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 from symfpu.families.family import Family
-from symfpu.families.members import Event, Member
-from symfpu.reports.normal import normal_event_record, normal_frequencies_record
-from symfpu.reports.series import frequencies_record
-from symfpu.reports.tables import fifteen_digits, number_text
+from symfpu.families.members import Event
 
 SHOWN_EVENTS = 12
 SHOWN_MEMBERS = 8  # besides the first; the last one is among them
-
-
-def family_record(found: Family) -> dict[str, Any]:
-    """A family for JSON."""
-    record: dict[str, Any] = {"kind": type(found).__name__, **found.chain.typed}
-    record["seeds"] = list(found.seeds)
-    record["ending"] = found.ending
-    record["members"] = [member_record(m) for m in found.members]
-    record["events"] = [event_record(e) for e in found.events]
-    if any(m.normal for m in found.members):
-        record["normal_events"] = [normal_event_record(e) for e in found.normal_events]
-    return record
-
-
-def event_record(event: Event) -> dict[str, Any]:
-    """An event of a family for JSON; what it is of, by name and by mode and harmonic."""
-    record: dict[str, Any] = {"event": event.kind, "what": event.what}
-    record["after"] = event.after
-    record["energy"] = number_text(event.energy, None)
-    record["value"] = number_text(event.value, None)
-    record["mode"] = event.mode or None
-    record["harmonic"] = list(event.harmonic) or None
-    record["interpolated"] = event.interpolated
-    return record
-
-
-def member_record(m: Member) -> dict[str, Any]:
-    """A member of a family for JSON; its chain and seeds are those of the family."""
-    digits = m.torus.digits
-    record: dict[str, Any] = {"energy": number_text(m.energy, None)}
-    record["harmonic_energy"] = number_text(m.harmonic_energy, None)
-    record["frequencies"] = frequencies_record(m.torus)
-    amplitudes = m.amplitudes.items()
-    record["amplitudes"] = {str(q): number_text(a, digits) for q, a in amplitudes}
-    record["residual"] = fifteen_digits(m.residual)
-    record["verdict"] = m.verdict
-    record["warnings"] = list(m.warnings)
-    if m.multipliers is not None:
-        record["stable"] = m.multipliers.stable
-        record["largest_multiplier"] = fifteen_digits(m.multipliers.largest)
-    if m.normal is not None:
-        record["normal"] = normal_frequencies_record(m.normal)
-    return record
 
 
 def family_table(found: Family) -> list[list[str]]:

@@ -6,89 +6,13 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from symfpu.errors import ResonantDivisor
-from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_family import NormalFamily
-from symfpu.normal.frequencies import NormalFrequencies, frequencies_of
+from symfpu.normal.frequencies import frequencies_of
 from symfpu.normal.modes import NoNormalModes, NormalMode, NormalModes
 from symfpu.normal.phantom import NormalFrequencySeries
-from symfpu.normal.resonances import ParametricResonance
-from symfpu.reports.series import frequencies_record
-from symfpu.reports.tables import fifteen_digits, number_text
 from symfpu.tori.torus import Torus
 
 SHOWN_RESONANCES = 10
-
-
-def normal_record(found: NormalModes) -> dict[str, Any]:
-    """Keys of the command line; real frequencies as strings, complex ones as [re, im]."""
-    torus = found.torus
-    return {
-        "kind": type(found).__name__,
-        **torus.chain.typed,
-        "seeds": list(torus.seeds),
-        "frequencies": frequencies_record(torus),
-        "verdict": found.verdict,
-        "stable": found.stable,
-        "undecided": list(found.undecided),
-        "missing": {str(q): why for q, why in found.missing.items()},
-        "growth": fifteen_digits(float(found.growth)),
-        "normal_frequencies": {
-            str(q): _number(w, found.digits) for q, w in found.frequencies.items()
-        },
-        "signatures": {str(mode.mode): mode.signature for mode in found.modes},
-        "resonances": [_resonance(one) for one in found.resonances[:SHOWN_RESONANCES]],
-        "residual": fifteen_digits(float(found.residual)),
-        "digits": found.digits,
-        **_error(found),
-    }
-
-
-def _error(found: NormalModes) -> dict[str, str]:
-    """What is known of frequencies with digits."""
-    if found.digits is None:
-        return {}
-    return {"frequency_error": number_text(found.error, 3)}
-
-
-def normal_frequencies_record(found: NormalFrequencies) -> dict[str, Any]:
-    """Normal frequencies of a member of a family for JSON."""
-    sigma = {str(q): _number(w) for q, w in found.frequencies.items()}
-    return {
-        "verdict": found.verdict,
-        "stable": found.stable,
-        "growth": fifteen_digits(found.growth),
-        "normal_frequencies": sigma,
-        "signatures": {str(q): n for q, n in found.signatures.items()},
-        "residual": fifteen_digits(found.residual),
-        "missing": {str(q): why for q, why in found.missing.items()},
-    }
-
-
-def normal_family_record(found: NormalFamily) -> dict[str, Any]:
-    """A line of tori for JSON: its members, where they are, and its events."""
-    torus = found.members[0].torus
-    return {
-        "kind": type(found).__name__,
-        **torus.chain.typed,
-        "seeds": list(torus.seeds),
-        "verdict": found.verdict,
-        "members": [
-            _member_record(one, part)
-            for one, part in zip(found.members, found.parts, strict=True)
-        ],
-        "events": [normal_event_record(event) for event in found.events],
-    }
-
-
-def _member_record(found: NormalModes, part: float) -> dict[str, Any]:
-    """A member of a line; its chain and seeds are those of the line."""
-    amplitudes = found.torus.amplitudes.items()
-    return {
-        "part": fifteen_digits(part),
-        "amplitudes": {str(q): repr(float(a)) for q, a in amplitudes},
-        "frequencies": frequencies_record(found.torus),
-        **normal_frequencies_record(frequencies_of(found, {})),
-    }
 
 
 def normal_family_text(found: NormalFamily) -> str:
@@ -170,36 +94,6 @@ def series_text(found: Sequence[BySeries]) -> list[str]:
 def _closed_shift(series: NormalFrequencySeries) -> str | None:
     """The lowest terms as a formula; None on a ring, which has none."""
     return None if series.chain.periodic else str(series.closed_shift())
-
-
-def normal_event_record(event: NormalEvent) -> dict[str, Any]:
-    """An event of a family of normal frequencies for JSON: what it is, and where."""
-    return {
-        "event": event.kind,
-        "resonance": _resonance(event.resonance),
-        "after": event.after,
-        "part": fifteen_digits(event.part),
-        "amplitudes": {str(q): repr(float(a)) for q, a in event.amplitudes.items()},
-        "energy": repr(event.energy),
-        "begins": event.begins,
-        "error": fifteen_digits(event.error),
-    }
-
-
-def _number(sigma: Any, digits: int | None = None) -> str | list[str]:
-    real = number_text(sigma.real, digits)
-    if not sigma.imag:
-        return real
-    return [real, number_text(sigma.imag, digits)]
-
-
-def _resonance(one: ParametricResonance) -> dict[str, Any]:
-    return {
-        "resonance": one.kind,
-        "modes": list(one.modes),
-        "harmonic": list(one.harmonic),
-        "distance": fifteen_digits(one.distance),
-    }
 
 
 def normal_text(found: NormalModes) -> str:

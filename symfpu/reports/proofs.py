@@ -16,10 +16,10 @@ from symfpu.proofs import (
     check_torus,
     theorem,
 )
-from symfpu.proofs.certificates import SINGLE, PropagationProof, RuleException
+from symfpu.proofs.certificates import PropagationProof
 from symfpu.proofs.sweeps import Sweep, SweepCase
 from symfpu.proofs.theorem import RuleForAllN
-from symfpu.reports.tables import markdown_table
+from symfpu.results.text_tables import markdown_table
 
 VERDICTS = ("proved", "refuted", "undecided")
 CERTIFIED = {
@@ -34,11 +34,6 @@ EVIDENCE = ("excited", "vanishing", "points", "coefficients", "digest")
 Json = dict[str, Any]
 
 
-def proof_record(proof: PropagationProof) -> Json:
-    """A proof for JSON: its certificate without the evidence, and what kind that is."""
-    return certificate_record(proof.certificate()) | {"reason": proof.reason}
-
-
 def certificate_record(certificate: Json) -> Json:
     """The same of a certificate that was read, of any kind; of others what is no list or table."""
     kind = (
@@ -50,31 +45,6 @@ def certificate_record(certificate: Json) -> Json:
         kept = {key: x for key, x in certificate.items() if isinstance(x, str | int)}
         kept.pop("digest", None)
     return {"kind": kind} | kept
-
-
-def sweep_record(sweep: Sweep) -> Json:
-    """A sweep for JSON: how many seed sets, and those in which the Proposition fails."""
-    law = "model" if sweep.model in SINGLE else "potential"
-    failing = [_case_record(case) for case in sweep.exceptions]
-    return {
-        "kind": Sweep.__name__,
-        law: sweep.model,
-        "order": sweep.order,
-        "cases": len(sweep.cases),
-        "exceptions": failing,
-    }
-
-
-def _case_record(case: SweepCase) -> Json:
-    """A seed set; its exceptions as those of a proof."""
-    exceptions = [RuleException(*entry).record() for entry in case.exceptions]
-    return {
-        "N": case.N,
-        "seeds": list(case.seeds),
-        "verdict": case.verdict,
-        "exceptions": exceptions,
-        "corrected_rule_holds": case.corrected_rule_holds,
-    }
 
 
 def sweep_markdown(sweep: Sweep) -> str:

@@ -3,84 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from typing import Any
 
-from symfpu.chain.length import label_entry
-from symfpu.frames.attributes import exact_text
-from symfpu.numbers.arithmetic import text
-from symfpu.numbers.counted import short
-from symfpu.reports.tables import GAP, fifteen_digits, text_table
-from symfpu.series.series import LindstedtSeries
-from symfpu.tori.verdict import Assessment, LargestTerm
+from symfpu.results.text_tables import GAP, text_table
+from symfpu.tori.verdict import Assessment
 
 SHOWN_ORDERS = 10  # of the evidence, about
-
-
-def series_record(series: LindstedtSeries) -> dict[str, Any]:
-    """A series for JSON, without its coefficients: those are in its table and in its file."""
-    record = {"kind": type(series).__name__, **series.chain.typed}
-    record["seeds"] = list(map(label_entry, series.seeds))
-    record["frequencies"] = frequencies_record(series)
-    record["order"] = series.order
-    record["digits"] = series.digits
-    record["smallest_divisors"] = divisor_records(series)
-    return record
-
-
-def frequencies_record(solution: Any) -> dict[str, str] | None:
-    """By seed, exact; of a series, too: None where none are chosen."""
-    if solution.frequencies is None:
-        return None
-    return {str(q): exact_text(w) for q, w in solution.omega.items()}
-
-
-def divisor_records(series: LindstedtSeries) -> list[dict[str, Any]]:
-    records = []
-    for divisor in series.smallest_divisors:
-        record: dict[str, Any] = {"size": fifteen_digits(divisor.size)}
-        record["mode"] = divisor.mode
-        record["harmonic"] = list(divisor.harmonic)
-        record["order"] = divisor.order
-        records.append(record)
-    return records
-
-
-def assessment_record(found: Assessment) -> dict[str, Any]:
-    """A verdict for JSON, with all its evidence; numbers of more than 15 digits as strings."""
-    certificate, sums = found.certificate, found.sums.items()
-    return {
-        **({} if found.chain is None else found.chain.typed),
-        "verdict": found.verdict,
-        "reasons": list(found.reasons),
-        "best_order": found.best_order,
-        "order": found.order,
-        "frequency_order": found.frequency_order,
-        "root_uncertainty": short(found.root_uncertainty),
-        "amplitudes_by_frequency_order": {
-            str(K): [text(a, 17) for a in values] for K, values in found.amplitudes.items()
-        },
-        "differences": {str(K): _short(x) for K, x in found.differences.items()},
-        "S_1": {str(q): _short(moduli) for q, (moduli, _) in sums},
-        "S_2": {str(q): _short(cosines) for q, (_, cosines) in sums},
-        "largest_terms": [_term_record(term) for term in found.terms],
-        "growth": short(found.growth),
-        "radius_by_ratio": short(found.radius),
-        "radius_by_poles": short(found.pole_radius),
-        "residuals": _short(found.residuals),
-        "energy_errors": _short(found.energy_errors),
-        "resummed_residual": short(found.resummed_residual),
-        "certified": None if certificate is None else certificate.certified,
-    }
-
-
-def _term_record(term: LargestTerm) -> dict[str, Any]:
-    record = {"order": term.order, "size": short(term.size), "mode": term.mode}
-    return record | {"harmonic": list(term.harmonic), "divisor": short(term.divisor)}
-
-
-def _short(values: Iterable[float]) -> list[float | None]:
-    return [short(x) for x in values]
 
 
 def assessment_text(found: Assessment, width: int | None = None) -> str:

@@ -2,45 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from symfpu.certified.stability_proof import ProvedExponent, StabilityProof
+from symfpu.certified.stability_proof import StabilityProof
 from symfpu.numbers.counted import counted
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.typed import decimal
-from symfpu.reports.tables import fifteen_digits
 
 MOST_GAPS = 5
-
-
-def stability_record(proof: StabilityProof) -> dict[str, Any]:
-    """Keys of the command line."""
-    orbit = proof.existence
-    return {
-        "kind": type(proof).__name__,
-        **orbit.chain.typed,
-        "seeds": [orbit.seed],
-        "frequencies": {str(orbit.seed): decimal(orbit.frequency)},
-        "proved": True,
-        "stable": proof.stable,
-        "theorem": proof.theorem,
-        "radius": fifteen_digits(orbit.radius),
-        "gaps": [[fifteen_digits(g.least), fifteen_digits(g.most)] for g in proof.gaps],
-        "growth": [fifteen_digits(x) for x in proof.growth],
-        "exponents": [_exponent(one) for one in proof.exponents],
-    }
-
-
-def _exponent(one: ProvedExponent) -> dict[str, Any]:
-    sigma = fifteen_digits(one.sigma.real)
-    return {
-        "mode": one.mode,
-        "harmonic": one.harmonic,
-        "sector": one.sector,
-        "sigma": sigma if one.circle else [sigma, fifteen_digits(one.sigma.imag)],
-        "radius": fifteen_digits(one.radius),
-        "growth": [fifteen_digits(x) for x in one.growth],
-    }
 
 
 def stability_text(proof: StabilityProof) -> str:

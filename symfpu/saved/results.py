@@ -13,8 +13,8 @@ from symfpu.bundles.bundle import save as save_solution
 from symfpu.bundles.tree import OWN_FORMAT, value_of, write_tree
 from symfpu.errors import InputError
 from symfpu.files.archive import Archive, Json
-from symfpu.frames.tabled import Gridded, Tabled
 from symfpu.numbers.public import public
+from symfpu.results.result import Gridded, Tabled
 from symfpu.saved.classes import CLASSES, is_result
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.grading import Ints
-from symfpu.frames.attributes import Attributes
-from symfpu.frames.table import Column, Table, by_seed
+from symfpu.results.attributes import Attributes
+from symfpu.results.table import Column, Table, by_seed
 
 Array = NDArray[Any]
 

@@ -24,6 +24,7 @@ from symfpu.algebra.residue import ResidueRing, cosine_table
 from symfpu.algebra.selection import NO_SEED, CosineModes, Modes
 from symfpu.chain.chain import Chain
 from symfpu.errors import ResonantDivisor, VanishingResidue
+from symfpu.results.numbers import fifteen_digits
 from symfpu.series.ring_resonances import refuse_resonances
 
 Floats = NDArray[np.float64]
@@ -38,6 +39,12 @@ class SmallDivisor:
     mode: int
     harmonic: tuple[int, ...]
     order: int
+
+    def entry(self) -> dict[str, Any]:
+        """For a record."""
+        size = fifteen_digits(self.size)
+        place = {"mode": self.mode, "harmonic": list(self.harmonic), "order": self.order}
+        return {"size": size, **place}
 
     def __repr__(self) -> str:
         harmonic = ",".join(map(str, self.harmonic))

@@ -19,13 +19,13 @@ from symfpu.algebra.formulas import Multiplier
 from symfpu.algebra.program import Program
 from symfpu.algebra.program_values import tabled, tangents_in_doubles, values_in_doubles
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.table import Column, Table
-from symfpu.frames.tabled import Gridded, Tabled
 from symfpu.numbers.arithmetic import DOUBLES
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
+from symfpu.results.attributes import attributes
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.result import Gridded, Tabled
+from symfpu.results.table import Column, Table
 from symfpu.series.coefficient_table import (
     COORDINATE,
     Part,

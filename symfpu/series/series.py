@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,16 +14,23 @@ from symfpu.algebra.formulas import NodeTable, expressions, named_expressions
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     with_digits,
 )
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
+from symfpu.results.attributes import attributes
+from symfpu.results.field import (
+    Field,
+    chain_fields,
+    exact_by_seed,
+    listed,
+    seeds_field,
+    shown_frequency,
+)
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 from symfpu.series.arguments import digits_of, frequencies_of
 from symfpu.series.coefficient_table import (
     COORDINATE,
@@ -55,7 +62,7 @@ RING_TERMS = "the waves of a ring have coefficients(q, order) and to_frame()"
 
 @public
 @dataclass(frozen=True, eq=False)
-class LindstedtSeries(SeriesSums, Shown, Tabled):
+class LindstedtSeries(SeriesSums, Tabled):
     """The series Q_q = sum mu^k Q_q^(k) and omega_q = Omega_q + sum mu^k omega_q^(k).
 
     The amplitudes are free.
@@ -110,6 +117,25 @@ class LindstedtSeries(SeriesSums, Shown, Tabled):
     LindstedtSeries(N=8, alpha=0.3, ends='periodic', seeds=1, order 6, 19 coefficients (float64),
     smallest divisor 0.35 at mode 2, harmonic (2), order 1)
     """
+
+    def _answer(self) -> str:
+        return f"order {self.order}, {counted(self.coefficient_count, 'coefficient')}"
+
+    def _fields(self) -> Iterator[Field]:
+        yield from chain_fields(self.chain)
+        yield seeds_field(self.seeds)
+        if self.frequencies is None:
+            yield Field("frequencies")
+        else:
+            shown = listed(map(shown_frequency, self.frequencies))
+            yield Field("frequencies", exact_by_seed(self.omega), "frequencies", shown)
+        yield Field("order", self.order)
+        yield Field("digits", self.digits)
+        yield Field("", label="ring", shown=self.precision)
+        divisors = self.smallest_divisors
+        yield Field("smallest_divisors", [divisor.entry() for divisor in divisors])
+        for smallest in divisors[:1]:
+            yield Field("", label="smallest divisor", shown=repr(smallest))
 
     def __repr__(self) -> str:
         chain = self.chain.label

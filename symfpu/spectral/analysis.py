@@ -14,13 +14,13 @@ from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.dynamics.orbits import Orbit
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Column, Table, joined
-from symfpu.frames.tabled import Tabled
-from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, part
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field
+from symfpu.results.result import Tabled
+from symfpu.results.table import Column, Table, joined
 from symfpu.spectral.channels import SPAN, Channel, ChannelBank
 from symfpu.spectral.combinations import Basis
 from symfpu.spectral.record import LINE_WIDTH, Exponential, Record, one_constant
@@ -83,7 +83,7 @@ class SpectralLine:
 
 @public
 @dataclass(frozen=True, eq=False)
-class FrequencyAnalysis(Shown, Tabled):
+class FrequencyAnalysis(Tabled):
     """The lines of an orbit. Made by `frequency_analysis` (Laskar's method); dimensionless, ours.
 
     chain : the model. T : the length of the orbit.
@@ -119,6 +119,20 @@ class FrequencyAnalysis(Shown, Tabled):
     lines: tuple[SpectralLine, ...] = field(repr=False)
     window_frequencies: Floats = field(repr=False)
     unresolved: float = 0.0
+
+    def _answer(self) -> str:
+        return counted(len(self.seeds), "independent frequency", "independent frequencies")
+
+    def _fields(self) -> Iterator[Field]:
+        yield from super()._fields()
+        yield Field("", label="to t", shown=f"{self.T:.10g}")
+        for q, omega, error in zip(self.seeds, self.frequencies, self.errors, strict=True):
+            name = f"\N{GREEK SMALL LETTER OMEGA}_{q}"
+            yield Field("", label=name, shown=f"{omega:.15g} \u00b1 {error:.1g}")
+        unknown = sum(line.harmonic is None for line in self.lines)
+        lines = f"{len(self.lines)}, {unknown} of them unidentified"
+        yield Field("", label="lines", shown=lines)
+        yield Field("", label="drift", shown=f"{self.drift:.2g}")
 
     def __repr__(self) -> str:
         by_seed = zip(self.seeds, self.frequencies, self.errors, strict=True)

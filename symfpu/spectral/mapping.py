@@ -6,7 +6,7 @@ One use of `symfpu.sweeps`: each energy is a case, and each case a row of a file
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from multiprocessing import parent_process
 from pathlib import Path
@@ -19,11 +19,6 @@ from symfpu.algebra.dense import available_cores
 from symfpu.chain.chain import Chain, require_fixed_ends
 from symfpu.errors import InputError, SymfpuError
 from symfpu.files.progress import Progress, unheard
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.table import joined
-from symfpu.frames.tabled import Gridded
-from symfpu.notebook import Shown
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import (
@@ -35,6 +30,11 @@ from symfpu.numbers.typed import (
     part,
     seed_modes,
 )
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, listed
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.result import Gridded
+from symfpu.results.table import joined
 from symfpu.spectral.one_energy import Row, kept_row, orbit_frequencies, require_analysable
 from symfpu.spectral.samples import require_turns
 from symfpu.sweeps.rows import SweepFailure, SweepRows
@@ -48,7 +48,7 @@ WORTH_PROCESSES = 2e6  # steps times bonds, of all energies: a second to ten of 
 
 @public
 @dataclass(frozen=True, eq=False)
-class FrequencyMap(Shown, Gridded):
+class FrequencyMap(Gridded):
     """Frequencies of orbits of one kind by their energy. Made by `frequency_map`; ours.
 
     chain : the model. T : the length of each orbit; dimensionless, as all here. packet : the modes
@@ -78,6 +78,18 @@ class FrequencyMap(Shown, Gridded):
     strengths: Floats = field(repr=False)
     counts: Ints
     drifts: Floats
+
+    def _answer(self) -> str:
+        return f"{self.counts.min()} to {self.counts.max()} frequencies"
+
+    def _fields(self) -> Iterator[Field]:
+        yield from super()._fields()
+        yield Field("", label="packet", shown=listed(self.packet))
+        yield Field("", label="to t", shown=f"{self.T:.10g}")
+        by_energy = zip(self.energies, self.counts, self.drifts, strict=True)
+        for energy, count, drift in by_energy:
+            found = counted(count, "frequency", "frequencies")
+            yield Field("", label=f"H = {energy:.6g}", shown=f"{found}, drift {drift:.2g}")
 
     def __repr__(self) -> str:
         chain = self.chain.label

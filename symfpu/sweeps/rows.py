@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.frames.attributes import attributes, plain
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.tabled import Gridded
+from symfpu.results.attributes import attributes, plain
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.result import Gridded
 
 Json = dict[str, Any]
 

@@ -14,8 +14,8 @@ import numpy as np
 from symfpu.chain.chain import Chain
 from symfpu.chain.potentials.potential import Potential
 from symfpu.errors import InputError, SymfpuError
-from symfpu.frames.attributes import exact_text
-from symfpu.frames.recorded import Recorded
+from symfpu.results.numbers import exact_text
+from symfpu.results.result import Result
 
 Json = dict[str, Any]
 
@@ -65,7 +65,7 @@ def result_value(value: Any) -> Any:
     >>> result_value({"ratio": Fraction(1, 3), "size": 0.1, "z": 1j, "bad": float("nan")})
     {'ratio': '1/3', 'size': 0.1, 'z': [0.0, 1.0], 'bad': 'nan'}
     """
-    if isinstance(value, Recorded):
+    if isinstance(value, Result):
         return value.record()
     if isinstance(value, Mapping):
         return {str(key): result_value(item) for key, item in value.items()}
@@ -116,6 +116,6 @@ def error_value(error: BaseException) -> Json:
 def _carried(value: Any) -> Any:
     """What an error carries; results and other objects as their text."""
     try:
-        return repr(value) if isinstance(value, Recorded) else result_value(value)
+        return repr(value) if isinstance(value, Result) else result_value(value)
     except InputError:
         return repr(value)

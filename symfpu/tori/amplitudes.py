@@ -6,7 +6,7 @@ omega_q = Omega_q + sum mu^k omega_q^(k)(A).
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from math import lcm
 from typing import Any
@@ -23,13 +23,13 @@ from symfpu.errors import (
     SymfpuError,
     UndeterminedAmplitudes,
 )
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf, with_digits
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import decimal, exact, integer
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field, listed, shown_number
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 from symfpu.series.series import LindstedtSeries, require_any_series
 from symfpu.tori.from_series import FromSeries, series_behind
 from symfpu.tori.root_certificate import certify_root
@@ -56,7 +56,7 @@ AGREEMENT = (
 
 @public
 @dataclass(frozen=True)
-class AmplitudeHistory(Shown, Tabled):
+class AmplitudeHistory(Tabled):
     """Amplitudes A(K) by frequency order K, and why orders without a root have none.
 
     Made by `amplitude_history`; dimensionless. Fig. 1(b) shows the differences |A(K+2) - A(K)| of
@@ -80,6 +80,16 @@ class AmplitudeHistory(Shown, Tabled):
     amplitudes: Mapping[int, tuple[Any, ...]]
     failures: Mapping[int, SymfpuError]
     chain: Chain | None = None
+
+    def _answer(self) -> str:
+        return f"{len(self.amplitudes)} of {len(self.orders)} orders have a root"
+
+    def _fields(self) -> Iterator[Field]:
+        yield from super()._fields()
+        if self.amplitudes:
+            last = max(self.amplitudes)
+            sizes = listed(shown_number(A) for A in self.amplitudes[last])
+            yield Field("", label=f"amplitudes at order {last}", shown=sizes)
 
     def __repr__(self) -> str:
         with_root = [K for K in self.orders if K in self.amplitudes]

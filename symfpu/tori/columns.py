@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.frames.grid import Variable
 from symfpu.numbers.arithmetic import DOUBLES, Arithmetic, Numbers
+from symfpu.results.grid import Variable
 from symfpu.tori.grid_sums import grid_sums
 
 Floats = NDArray[np.float64]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -11,12 +11,14 @@ import numpy as np
 
 from symfpu.algebra.grading import Ints
 from symfpu.errors import InputError
-from symfpu.frames.attributes import attributes
-from symfpu.frames.table import Table
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import Numbers, text, with_digits
 from symfpu.numbers.mpfr import at_the_face, inside
 from symfpu.numbers.typed import order_of
+from symfpu.results.attributes import attributes
+from symfpu.results.field import Field
+from symfpu.results.numbers import fifteen_digits, number_text
+from symfpu.results.result import Tabled
+from symfpu.results.table import Table
 from symfpu.series.series import LindstedtSeries, require_any_series
 from symfpu.tori.columns import columns_of
 from symfpu.tori.torus import Origin, Torus, comes_from
@@ -110,6 +112,19 @@ class FromSeries(Origin):
         if self.certificate is None:
             return orders
         return (*orders, "certified" if self.certificate.certified else "not certified")
+
+    def fields(self, torus: Torus) -> Iterator[Field]:
+        digits, proof, history = torus.digits, self.certificate, {}
+        for k, values in self.history.items():
+            history[str(k)] = [number_text(a, digits) for a in values]
+        yield Field("order", self.order)
+        yield Field("frequency_order", self.frequency_order)
+        yield Field("guard_digits", None if digits is None else self.series.guard_digits)
+        yield Field("certified", None if proof is None else proof.certified)
+        yield Field("history", history)
+        yield Field("root_residual", fifteen_digits(self.root_residual))
+        divisors = [divisor.entry() for divisor in self.series.smallest_divisors]
+        yield Field("smallest_divisors", divisors)
 
     @cached_property
     def terms_by_order(self) -> tuple[tuple[Ints, Numbers], ...]:

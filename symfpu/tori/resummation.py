@@ -18,10 +18,6 @@ from numpy.typing import NDArray
 
 from symfpu.chain.frequency_shift import LARGEST_AMPLITUDE
 from symfpu.errors import DidNotConverge, InputError, NoRealAmplitude
-from symfpu.frames.attributes import attributes
-from symfpu.frames.grid import Variable
-from symfpu.frames.table import Column, Table
-from symfpu.frames.tabled import Tabled
 from symfpu.numbers.arithmetic import (
     DOUBLES,
     Numbers,
@@ -33,6 +29,10 @@ from symfpu.numbers.counted import counted
 from symfpu.numbers.mpfr import MPFR, at_the_face, in_mpf, inside
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, order_of
+from symfpu.results.attributes import attributes
+from symfpu.results.grid import Variable
+from symfpu.results.result import Tabled
+from symfpu.results.table import Column, Table
 from symfpu.series.series import LindstedtSeries, require_any_series
 from symfpu.tori.amplitudes import first_shifting_order, frequency_orders, shifts
 from symfpu.tori.from_series import FromSeries, require_series_torus

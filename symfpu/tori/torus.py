@@ -20,11 +20,6 @@ from typing_extensions import TypeVar
 from symfpu.algebra.grading import Ints
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
-from symfpu.frames.attributes import RADIANS, attributes
-from symfpu.frames.grid import Grid, Variable
-from symfpu.frames.table import joined
-from symfpu.frames.tabled import Gridded
-from symfpu.notebook import Shown
 from symfpu.numbers.arithmetic import (
     DOUBLES,
     MULTIPRECISION,
@@ -36,6 +31,20 @@ from symfpu.numbers.arithmetic import (
 from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer
+from symfpu.results.attributes import RADIANS, attributes
+from symfpu.results.field import (
+    Field,
+    chain_fields,
+    exact_by_seed,
+    numbers_by_seed,
+    seeds_field,
+    shown_frequency,
+    shown_number,
+)
+from symfpu.results.grid import Grid, Variable
+from symfpu.results.numbers import fifteen_digits, number_text
+from symfpu.results.result import Gridded
+from symfpu.results.table import joined
 from symfpu.tori.columns import CHUNK, Columns, ModeColumns, columns_of, require_columns
 
 Floats = NDArray[np.float64]
@@ -75,6 +84,10 @@ class Origin:
         """A in the order of the seeds, where they were chosen before the coefficients."""
         return None
 
+    def fields(self, torus: Torus) -> Iterator[Field]:
+        """What only this way of making a torus knows of it."""
+        yield from ()
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(self.facts())})"
 
@@ -86,7 +99,7 @@ GIVEN = Origin()
 
 @public
 @dataclass(frozen=True, eq=False, repr=False)
-class Torus(Shown, Gridded, Generic[Made]):
+class Torus(Gridded, Generic[Made]):
     """A solution Q_q(t) = sum over harmonics of c_q[nu] cos(nu.(omega t + phi)).
 
     Every torus and breather is one, with fixed ends and on a ring: what a series, Newton's method
@@ -143,6 +156,36 @@ class Torus(Shown, Gridded, Generic[Made]):
         phases = {q: self.phases.get(q, 0.0) for q in self.seeds}
         object.__setattr__(self, "phases", phases)
         show(self, "cosines", "phases")
+
+    def _answer(self) -> str:
+        return "; ".join(self.warnings) or f"residual {self.residual():.2g}"
+
+    def _fields(self) -> Iterator[Field]:
+        yield Field("origin", type(self.origin).__name__)
+        yield from chain_fields(self.chain)
+        yield seeds_field(self.seeds)
+        yield Field("frequencies", exact_by_seed(self.omega))
+        yield Field("digits", self.digits)
+        yield Field("amplitudes", numbers_by_seed(self.amplitudes, self.digits))
+        for q, omega in self.omega.items():
+            size = shown_number(self.amplitudes[q], self.digits)
+            shown = f"\N{GREEK SMALL LETTER OMEGA} = {shown_frequency(omega)}, A = {size}"
+            yield Field("", label=f"seed {q}", shown=shown)
+        yield from self._energy_fields()
+        yield Field("residual", fifteen_digits(self.residual()))
+        yield Field("harmonics", len(self.harmonics), "harmonics")
+        yield Field("warnings", list(self.warnings))
+        yield from self.origin.fields(self)
+
+    def _energy_fields(self) -> Iterator[Field]:
+        """H and sum E_q at t = 0, and the time average of the latter, with all digits."""
+        with self._context():
+            H, harmonic = self.energy(), self.harmonic_energies().sum()
+            average = self.average_spectrum().sum()
+        text_of_H = number_text(H, self.digits)
+        yield Field("energy", text_of_H, "energy H", shown_number(H, self.digits))
+        yield Field("harmonic_energy", number_text(harmonic, self.digits))
+        yield Field("average_harmonic_energy", number_text(average, self.digits))
 
     def __repr__(self) -> str:
         chain = self.chain.label

@@ -10,7 +10,7 @@ convergence by ratio and by Pade poles, and the resummed torus.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
@@ -20,13 +20,14 @@ from numpy.typing import NDArray
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
-from symfpu.frames.attributes import Attributes, attributes
-from symfpu.frames.table import Column, Table, joined
-from symfpu.frames.tabled import Tabled
-from symfpu.notebook import Shown
-from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers
+from symfpu.numbers.arithmetic import DOUBLES, MULTIPRECISION, Arithmetic, Numbers, text
+from symfpu.numbers.counted import short
 from symfpu.numbers.mpfr import at_the_face, inside
 from symfpu.numbers.public import public
+from symfpu.results.attributes import Attributes, attributes
+from symfpu.results.field import Field, chain_fields
+from symfpu.results.result import Tabled
+from symfpu.results.table import Column, Table, joined
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders, steps_of_frequencies
@@ -72,15 +73,25 @@ class LargestTerm:
     harmonic: tuple[int, ...]
     divisor: float
 
+    def entry(self) -> dict[str, Any]:
+        """For a record."""
+        where = {"mode": self.mode, "harmonic": list(self.harmonic)}
+        size, divisor = short(self.size), short(self.divisor)
+        return {"order": self.order, "size": size, **where, "divisor": divisor}
+
     def __repr__(self) -> str:
         harmonic = ",".join(map(str, self.harmonic))
         place = f"mode {self.mode}, harmonic ({harmonic})"
         return f"{self.size:.2g} at {place}, divisor {self.divisor:.2g}"
 
 
+def _short(values: Iterable[float]) -> list[float | None]:
+    return [short(x) for x in values]
+
+
 @public
 @dataclass(frozen=True, eq=False)
-class Assessment(Shown, Tabled):
+class Assessment(Tabled):
     """What `assess` found; dimensionless numbers.
 
     word : 'converged', 'asymptotic', 'not a torus', or 'undecided' where too few orders are known.
@@ -142,6 +153,36 @@ class Assessment(Shown, Tabled):
         if self.word == "asymptotic":
             return f"asymptotic, best at order {self.best_order}"
         return self.word
+
+    def _fields(self) -> Iterator[Field]:
+        if self.chain is not None:
+            yield from chain_fields(self.chain)
+        yield Field("verdict", self.verdict)
+        yield Field("reasons", list(self.reasons), "reasons", "; ".join(self.reasons))
+        found = f"{self.best_order} of {self.order}"
+        yield Field("best_order", self.best_order, "best order", found)
+        yield Field("order", self.order)
+        yield Field("frequency_order", self.frequency_order)
+        yield Field("root_uncertainty", short(self.root_uncertainty))
+        by_order = self.amplitudes.items()
+        amplitudes = {str(K): [text(a, 17) for a in values] for K, values in by_order}
+        yield Field("amplitudes_by_frequency_order", amplitudes)
+        differences = {str(K): _short(x) for K, x in self.differences.items()}
+        yield Field("differences", differences)
+        for place, name in enumerate(("S_1", "S_2")):
+            sums = {str(q): _short(both[place]) for q, both in self.sums.items()}
+            yield Field(name, sums)
+        yield Field("largest_terms", [term.entry() for term in self.terms])
+        yield Field("growth", short(self.growth))
+        radius = f"{self.radius:.3g}"
+        yield Field("radius_by_ratio", short(self.radius), "radius in mu, by ratio", radius)
+        yield Field("radius_by_poles", short(self.pole_radius))
+        least = f"{self.residuals[self.best_order]:.2g}"
+        yield Field("residuals", _short(self.residuals), "least residual", least)
+        yield Field("energy_errors", _short(self.energy_errors))
+        yield Field("resummed_residual", short(self.resummed_residual))
+        proof = self.certificate
+        yield Field("certified", None if proof is None else proof.certified)
 
     def __repr__(self) -> str:
         return f"Assessment({self.verdict}: {'; '.join(self.reasons)})"

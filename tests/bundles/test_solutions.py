@@ -11,7 +11,7 @@ from symfpu import BundleError, Chain, InputError, Newton, Torus, lindstedt, ref
 from symfpu.bundles.bundle import load, save
 from tests.bundles.test_bundle import opened, same
 from tests.bundles.test_bundle_damage import forged, numpy_file
-from tests.results import result
+from tests.every_result import result
 from tests.tori.solutions import CASES
 
 
@@ -135,7 +135,7 @@ def test_forged_solutions_are_refused(kind, case, tmp_path):
 
 
 def results_to_forge(kind):
-    """A solution of tests/results.py or of tests/tori/solutions.py, or a series."""
+    """A solution of tests/every_result.py or of tests/tori/solutions.py, or a series."""
     if kind == "waves":
         return waves()
     if kind == "Newton of waves":

@@ -6,7 +6,7 @@ import pytest
 
 from symfpu import Chain, InputError, lindstedt, refine, solve_amplitudes
 from symfpu.certified.kam import diophantine, kam_sizes, root_near
-from tests.results import two_angles
+from tests.every_result import two_angles
 from tests.tolerances import KAM_DIGITS, KAM_DOUBLES
 
 NOBLE = (61, -209, 179)  # (19 phi + 7) / (11 phi + 4), phi the golden mean

@@ -6,7 +6,7 @@ import symfpu
 from symfpu import Chain, lindstedt, save, solve_amplitudes
 from tests.breather import breather_of
 from tests.cli.running import answer, refusal, run, shown
-from tests.results import two_angles
+from tests.every_result import two_angles
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from symfpu.codegen import evaluator as module
 from symfpu.codegen.evaluator import CompiledFunctions, find_compiler
 from tests.codegen.compilers import program
 from tests.codegen.test_c99 import OF_LARGEST, angles, assert_close, case, random_times
-from tests.results import COPIES
+from tests.every_result import COPIES
 
 LARGEST_TIME = 100  # NumPy rounds omega t: half a last place of it is 1e-14
 

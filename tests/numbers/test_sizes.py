@@ -15,7 +15,7 @@ import symfpu
 from symfpu import Chain, InputError, frequency_rank, group_energy, integrate, lindstedt, series_bytes
 from symfpu.chain.powers import Powers
 from symfpu.chain.propagation import _orders
-from tests.results import two_angles
+from tests.every_result import two_angles
 
 ALPHA, TODA = Chain(8, alpha="0.3"), Chain(8, potential="toda:1/2")
 OPEN = Chain("N", alpha=1)

@@ -17,7 +17,7 @@ from matplotlib.text import Text
 
 from symfpu import plots
 from symfpu.plots.style import styled
-from tests import results
+from tests import every_result
 from tests.plots import cases
 
 BASELINE = Path(__file__).parent / "baseline"
@@ -48,12 +48,12 @@ PICTURES = {
     "family-multipliers": lambda ax: plots.family_multipliers(cases.unstable(), ax),
     "family-spectra": lambda ax: plots.family_spectra(cases.pair(), ax),
     "normal-frequencies": lambda ax: plots.normal_frequencies(cases.normal(), ax),
-    "family-normal-frequencies": lambda ax: plots.family_normal_frequencies(results.normal_line(), ax),
+    "family-normal-frequencies": lambda ax: plots.family_normal_frequencies(every_result.normal_line(), ax),
     "lines": lambda ax: plots.lines(cases.lines_found(), ax),
-    "atlas-borders": lambda ax: plots.atlas_borders(results.borders(), ax),
-    "atlas-map": lambda ax: plots.atlas_map(results.borders(), ax, N=8, border="poles"),
-    "frequency-map": lambda ax: plots.frequency_map(results.mapped(), ax),
-    "frequency-drift": lambda ax: plots.frequency_drift(results.mapped(), ax),
+    "atlas-borders": lambda ax: plots.atlas_borders(every_result.borders(), ax),
+    "atlas-map": lambda ax: plots.atlas_map(every_result.borders(), ax, N=8, border="poles"),
+    "frequency-map": lambda ax: plots.frequency_map(every_result.mapped(), ax),
+    "frequency-drift": lambda ax: plots.frequency_drift(every_result.mapped(), ax),
     "multipliers": lambda ax: plots.multipliers(cases.stable_floquet(), ax),
     "multipliers-unstable": lambda ax: plots.multipliers(cases.unstable().members[-1].multipliers, ax),
     "alignment": lambda ax: plots.alignment(cases.indices(), ax),

@@ -2,12 +2,7 @@
 
 import re
 
-import pytest
-
-from symfpu import InputError
-from symfpu.notebook import Shown
-from symfpu.plots import usual
-from tests import results
+from tests import every_result
 from tests.elements import read
 from tests.plots import cases
 
@@ -27,20 +22,7 @@ def test_signs_of_html_in_an_answer_are_escaped():
     assert not re.search(r"real > 0", text)
 
 
-def test_what_has_no_usual_picture_says_so():
-    with pytest.raises(InputError, match=r"see symfpu\.plots"):
-        usual.picture(3)
-
-
-def test_every_result_that_shows_itself_has_an_entry():
-    def kinds(kind):
-        return {kind}.union(*map(kinds, kind.__subclasses__()))
-
-    for kind in kinds(Shown) - {Shown}:
-        assert any(issubclass(kind, entry.kind) for entry in usual.USUAL), kind
-
-
 def test_borders_are_counted_without_those_that_were_not_found():
-    rows = results.borders().rows
+    rows = every_result.borders().rows
     assert len(rows.rows) == 4
-    assert read(results.borders()._repr_html_()).text.lstrip().startswith("Atlas: 3 borders")
+    assert read(every_result.borders()._repr_html_()).text.lstrip().startswith("Atlas: 3 borders")

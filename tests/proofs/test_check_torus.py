@@ -18,8 +18,8 @@ from symfpu.proofs.check_torus.claim import read_claim
 from symfpu.proofs.check_torus.residual import residuals
 from symfpu.proofs.check_torus.series import by_pairs
 from symfpu.proofs.reading import CertificateError
+from tests.every_result import two_angles
 from tests.proofs.certificate_files import altered, check_refused, sealed
-from tests.results import two_angles
 
 
 @cache

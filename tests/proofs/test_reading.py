@@ -13,7 +13,7 @@ from symfpu.proofs import check_every_length, check_existence, check_propagation
 from symfpu.proofs.checkers import CHECKERS, verify_certificate
 from symfpu.proofs.reading import CertificateError, Kind, check_kind, dyadic, fraction, need, read_kind, verified, whole
 from symfpu.proofs.rounding import scientific, up
-from tests import results
+from tests import every_result
 from tests.proofs.certificate_files import altered, moved, places_of, reason, sealed
 from tests.system import raising
 
@@ -116,10 +116,10 @@ def test_up_is_the_least_integer_not_below():
 VERIFY = {of.FORMAT: of.verify for of in (check_every_length, check_existence, check_propagation, check_stability, check_torus)}
 MADE = {
     check_every_length.FORMAT: lambda: prove_for_all_N("beta", 2, 1),
-    check_existence.FORMAT: lambda: prove_existence(results.orbit()),
+    check_existence.FORMAT: lambda: prove_existence(every_result.orbit()),
     check_propagation.FORMAT: lambda: prove_propagation(8, (1, 4), 3, model="beta"),
     check_stability.FORMAT: lambda: prove_stability(symfpu.torus(Chain(4, alpha="0.3"), (1,), amplitudes={1: "0.2"})),
-    check_torus.FORMAT: lambda: prove_residual(results.two_angles()),
+    check_torus.FORMAT: lambda: prove_residual(every_result.two_angles()),
 }
 
 

@@ -11,9 +11,8 @@ import pytest
 import symfpu
 from symfpu import Chain, InputError, cite, family
 from symfpu.reports.family import SHOWN_MEMBERS, family_text
-from symfpu.reports.records import record
-from symfpu.reports.tables import markdown_table
-from tests.results import public_classes, result
+from symfpu.results.text_tables import markdown_table
+from tests.every_result import public_classes, result
 from tests.tolerances import THIRTY_DIGITS
 
 
@@ -57,11 +56,6 @@ def test_every_result_with_frequencies_of_seeds_has_them_by_seed():
 
 def attributes_of(kind):
     return {*dir(kind), *getattr(kind, "__dataclass_fields__", ())}
-
-
-def test_what_is_no_result_is_refused():
-    with pytest.raises(InputError, match="a result with a record"):
-        record("torus")
 
 
 def test_a_file_has_the_record_of_what_it_holds():

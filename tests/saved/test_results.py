@@ -10,7 +10,7 @@ from symfpu import BundleError, Chain, InputError, integrate, load, prove_existe
 from symfpu.saved.classes import CLASSES, PARTS, RESULTS
 from tests.bundles.test_bundle import same
 from tests.bundles.test_bundle_damage import forged
-from tests.results import public_classes, result
+from tests.every_result import public_classes, result
 
 ROOT = Path(symfpu.__file__).parent.parent
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.frames.attributes import Attributes
-from symfpu.frames.packages import package
+from symfpu.results.attributes import Attributes
+from symfpu.results.packages import package
 
 if TYPE_CHECKING:
     import pandas as pd

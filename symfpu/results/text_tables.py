@@ -2,30 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
-from typing import Any
-
-from symfpu.files.writing import write_rows
-from symfpu.numbers.arithmetic import text
+from collections.abc import Iterable, Sequence
 
 GAP = "  "  # between the columns of a table in a terminal
-
-
-def fifteen_digits(value: float) -> float:
-    """A measure of size to 15 digits, the most that a number in JSON has.
-
-    What needs more is written as a string.
-    """
-    return float(f"{value:.15g}")
-
-
-def number_text(value: Any, digits: int | None) -> str:
-    """A number that loses no digit.
-
-    The shortest decimal of a double, or so many digits of an mpf.
-    """
-    return repr(float(value)) if digits is None else text(value, digits)
 
 
 def text_table(
@@ -67,15 +46,3 @@ def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     rule = ["---"] * len(header)
     lines = [header, rule, *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def write_csv(
-    tables: Mapping[str, tuple[Sequence[str], Iterable[Sequence[Any]]]], folder: Path
-) -> list[Path]:
-    """Tables by name, each with its header, as CSV files in a folder."""
-    paths = []
-    for name, (header, lines) in tables.items():
-        path = folder / f"{name}.csv"
-        write_rows(path, [header, *lines])
-        paths.append(path)
-    return paths

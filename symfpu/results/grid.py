@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from symfpu.frames.attributes import DIMENSIONLESS, Attributes
-from symfpu.frames.packages import package
-from symfpu.frames.table import Table
+from symfpu.results.attributes import DIMENSIONLESS, Attributes
+from symfpu.results.packages import package
+from symfpu.results.table import Table
 
 if TYPE_CHECKING:
     import xarray

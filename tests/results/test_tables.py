@@ -21,8 +21,8 @@ from symfpu import (
     toda_gaps,
     toda_invariants,
 )
-from symfpu.frames.attributes import attributes, plain
-from symfpu.frames.grid import ROUNDED, Grid, Variable
+from symfpu.results.attributes import attributes, plain
+from symfpu.results.grid import ROUNDED, Grid, Variable
 from tests.bundles.test_bundle import same
 from tests.tolerances import COEFFICIENT, FORTY_DIGITS, ROUNDING
 

@@ -10,13 +10,12 @@ from typing import Any, Protocol
 import numpy as np
 
 from symfpu import __version__
-from symfpu.numbers.typed import decimal
+from symfpu.results.numbers import exact_text
 
 Attributes = dict[str, Any]
 
 DIMENSIONLESS = "dimensionless"
 RADIANS = "radians"
-LONGEST_TYPED = 2000  # bits of an exact number that is written in decimal digits
 
 
 class SomeChain(Protocol):
@@ -64,11 +63,3 @@ def plain(value: Any) -> Any:
     if isinstance(value, Fraction):
         return exact_text(value)
     return float(value) if isinstance(value, float | np.floating) else str(value)
-
-
-def exact_text(value: Fraction) -> str:
-    """As it is typed; with so many digits that Python prints none of them, in base 16."""
-    bits = max(value.numerator.bit_length(), value.denominator.bit_length())
-    if bits > LONGEST_TYPED:
-        return f"{value.numerator:#x}/{value.denominator:#x}"
-    return decimal(value)
