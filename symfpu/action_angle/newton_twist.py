@@ -19,7 +19,7 @@ from symfpu.errors import SymfpuError
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.refinement.conditions import amplitude, seed_amplitudes
 from symfpu.refinement.guesses import shifts_of
-from symfpu.refinement.harmonics import unit_harmonics
+from symfpu.refinement.harmonics import by_harmonic, unit_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.newton import responses
@@ -130,11 +130,7 @@ def equation_of(torus: Torus) -> tuple[InvarianceEquation, Numbers]:
 
     Cosines (H, C) as the torus has them, 0 where the symmetry forbids one.
     """
-    signs = [_sign(nu) for nu in torus.harmonics.tolist()]
-    harmonics = torus.harmonics * np.array(signs)[:, None]
-    rows = {
-        tuple(nu): row for nu, row in zip(harmonics.tolist(), torus.cosines, strict=True)
-    }
+    rows = by_harmonic(torus.harmonics, torus.cosines)
     none = np.zeros(torus.cosines.shape[1])
     for unit in unit_harmonics(len(torus.seeds)):
         rows.setdefault(unit, none)
@@ -144,8 +140,3 @@ def equation_of(torus: Torus) -> tuple[InvarianceEquation, Numbers]:
     )
     cosines = np.array([rows[nu] for nu in listed])
     return equation, np.where(equation.mask, cosines, 0)
-
-
-def _sign(nu: list[int]) -> int:
-    """-1 where the first number that is not 0 is negative."""
-    return -1 if next((n for n in nu if n), 1) < 0 else 1

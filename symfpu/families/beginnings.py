@@ -14,7 +14,7 @@ from symfpu.errors import SymfpuError
 from symfpu.families.members import Level, Member, linear_by_mode
 from symfpu.files.progress import Progress
 from symfpu.refinement.conditions import Condition, amplitude, ratio_conditions
-from symfpu.refinement.extrapolation import coefficients_at
+from symfpu.refinement.harmonics import by_harmonic, coefficients_at
 from symfpu.refinement.refined_torus import TOLERANCE, Newton, NoTorus, refined_torus
 from symfpu.refinement.tori import refine
 from symfpu.tori.short_series import shifts_by_squares, short_series
@@ -119,6 +119,6 @@ def returned(members: Sequence[Member], *, tolerance: float) -> bool:
     except SymfpuError:
         return False
     harmonics, known = last.torus.harmonics, last.torus.cosines
-    same = coefficients_at(harmonics, other)
+    same = coefficients_at(harmonics, by_harmonic(other.harmonics, other.cosines))
     difference = np.abs(known - same).max()
     return bool(difference < np.sqrt(tolerance) * np.abs(same).max())

@@ -17,8 +17,7 @@ from symfpu.families.members import Level, linear_by_mode
 from symfpu.families.whole import Whole, require_one_curve, whole
 from symfpu.files.progress import Progress
 from symfpu.refinement.conditions import Condition, plane, ratio_conditions
-from symfpu.refinement.extrapolation import extrapolated
-from symfpu.refinement.guesses import shifts_of
+from symfpu.refinement.guesses import extrapolated, shifts_of
 from symfpu.refinement.lattice import Floats
 from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus
 from symfpu.tori.torus import Torus

@@ -21,8 +21,7 @@ from symfpu.families.normal_events import NormalEvent
 from symfpu.families.normal_way import NormalWay
 from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.refinement.conditions import resonance
-from symfpu.refinement.extrapolation import extrapolated
-from symfpu.refinement.guesses import shifts_of
+from symfpu.refinement.guesses import extrapolated, shifts_of
 from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.refined_torus import Newton, NoTorus
 from symfpu.tori.torus import Torus

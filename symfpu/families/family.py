@@ -21,7 +21,7 @@ from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, exact
 from symfpu.refinement.conditions import frequency, ratio_conditions
-from symfpu.refinement.extrapolation import extrapolated
+from symfpu.refinement.guesses import extrapolated
 from symfpu.refinement.refined_torus import Newton, refined_torus
 from symfpu.refinement.tori import refine
 from symfpu.results.attributes import attributes

@@ -13,7 +13,7 @@ import numpy as np
 from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import Between, followed_modes
 from symfpu.refinement.conditions import Condition, amplitude_line
-from symfpu.refinement.extrapolation import extrapolated
+from symfpu.refinement.guesses import extrapolated
 from symfpu.refinement.refined_torus import NoTorus, refined_torus
 from symfpu.refinement.tori import refine
 from symfpu.tori.torus import Torus

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
@@ -28,7 +28,7 @@ from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers, mpf, with_digits
 from symfpu.numbers.typed import integer
 from symfpu.refinement.guesses import frequency_shifts
-from symfpu.refinement.harmonics import within_reach
+from symfpu.refinement.harmonics import by_harmonic, coefficients_at, within_reach
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.iterative_refinement import (
     CHECK_BITS,
@@ -105,20 +105,39 @@ class IterativeRefinement(Origin):
 
 
 class Guess(NamedTuple):
-    """Where refinement begins: coefficients by harmonic (C,), and what fixes the torus.
+    """Where refinement begins: a torus in doubles or in digits, and what is to fix it.
 
-    frequencies : exact; found anew where other numbers are prescribed. phases : of the result.
-    digits : of the coefficients, None for doubles. steps : made so far.
+    steps : made so far.
     """
 
-    chain: Chain
-    seeds: tuple[int, ...]
-    coefficients: dict[tuple[int, ...], Any]
-    frequencies: tuple[Fraction, ...]
+    torus: Torus
     prescribed: Prescribed
-    phases: dict[int, Any]
-    digits: int | None
     steps: int = 0
+
+    @property
+    def digits(self) -> int:
+        """Of its coefficients."""
+        return DOUBLE_DIGITS if self.torus.digits is None else self.torus.digits
+
+    @property
+    def frequencies(self) -> tuple[Fraction, ...]:
+        """Those that are held, or those of the torus."""
+        return self.prescribed.held_frequencies or tuple(self.torus.frequencies)
+
+    def moved(self, to: Reached) -> Guess:
+        """The same problem from what refinement has reached."""
+        found = tuple(Fraction(int(w), 1 << to.bits) for w in to.omega)
+        torus = Torus(
+            self.torus.chain,
+            self.torus.seeds,
+            self.prescribed.held_frequencies or found,
+            to.harmonics,
+            from_integers(to.coefficients, np.asarray(-to.bits)),
+            self.torus.phases,
+            digits=to.digits,
+            travels=self.torus.travels,
+        )
+        return self._replace(torus=torus, steps=to.steps)
 
 
 def require_digits(chain: Chain, digits: int, argument: str) -> None:
@@ -134,57 +153,27 @@ def require_digits(chain: Chain, digits: int, argument: str) -> None:
         raise InputError(argument, f"one of {chain!r}", allowed, NO_TERMS)
 
 
-def guess_of(torus: Torus, prescribed: Prescribed) -> Guess:
-    """A torus in doubles or in digits as where refinement begins."""
-    rows = {}
-    for nu, row in zip(torus.harmonics.tolist(), torus.cosines, strict=True):
-        sign = -1 if next((n for n in nu if n), 1) < 0 else 1
-        rows[tuple(sign * n for n in nu)] = row
-    phases = dict(torus.phases)
-    frequencies = prescribed.held_frequencies or tuple(torus.frequencies)
-    return Guess(
-        torus.chain, torus.seeds, rows, frequencies, prescribed, phases, torus.digits
-    )
-
-
-def resumed(guess: Guess, reached: Reached) -> Guess:
-    """A guess with what an earlier run had reached."""
-    with mpmath.workprec(reached.bits + GUARD_BITS):
-        table = from_integers(reached.coefficients, np.asarray(-reached.bits))
-        rows = map(tuple, reached.harmonics.tolist())
-        found = _rational(reached.omega, reached.bits)
-        frequencies = guess.prescribed.held_frequencies or found
-        return guess._replace(
-            coefficients=dict(zip(rows, table, strict=True)),
-            frequencies=frequencies,
-            digits=reached.digits,
-            steps=reached.steps,
-        )
-
-
-def _rational(omega: Integers, bits: int) -> tuple[Fraction, ...]:
-    return tuple(Fraction(int(w), 1 << bits) for w in omega)
-
-
 def torus_to_digits(
-    guess: Guess, digits: int, path: Path | None, tell: Progress
+    guess: Guess, digits: int, path: Path | None, report: Progress
 ) -> Torus[IterativeRefinement]:
     """The torus near the guess; a run with a file goes on from what that holds.
 
     Raises Failure, and InputError, also for a file of another run or in use.
     """
     if path is None:
-        return precise_torus(guess, digits, tell)
+        return precise_torus(guess, digits, report)
     with one_run(path):
-        held = guess.prescribed.by_name()
-        kept = RefinementFile(path, guess.chain, digits, guess.seeds, held)
-        before = kept.read()
-        start = guess if before is None else resumed(guess, before)
-        return precise_torus(start, digits, tell, kept.write)
+        chain, seeds = guess.torus.chain, guess.torus.seeds
+        file = RefinementFile(path, chain, digits, seeds, guess.prescribed.by_name())
+        before = file.read()
+        if before is not None:
+            with mpmath.workprec(before.bits + GUARD_BITS):
+                guess = guess.moved(before)
+        return precise_torus(guess, digits, report, file.write)
 
 
 def precise_torus(
-    guess: Guess, digits: int, tell: Progress, keep: Keep = no_file
+    guess: Guess, digits: int, report: Progress, keep: Keep = no_file
 ) -> Torus[IterativeRefinement]:
     """The torus near the guess with so many digits; raises Failure, and InputError for too many.
 
@@ -194,23 +183,34 @@ def precise_torus(
     steps need all of them. Then harmonics are added until none that is left out has an error
     above the last digit.
     """
-    if digits // 2 > _digits_of(guess):
+    halves = digits // 2
+    if halves > guess.digits:
         _require_room(guess, digits)
-        guess = _reached(guess, digits // 2, tell, keep)
+        guess = _reached(guess, halves, report, keep)
     with mpmath.workdps(digits + CARRIED_DIGITS):
-        start = TorusProblem(guess, _fitted(guess, digits), digits, tell, keep)
-        problem, left = refined(start, digits, tell)
+        start = TorusProblem(guess, _fitted(guess, digits), digits, report, keep)
+        problem, left = refined(start, digits, report)
         return problem.result(left)
+
+
+def _reached(guess: Guess, digits: int, report: Progress, keep: Keep) -> Guess:
+    """A guess of so many digits, with the harmonics that a fit expects; not checked."""
+    if digits // 2 > guess.digits:
+        guess = _reached(guess, digits // 2, report, keep)
+    with mpmath.workdps(digits + CARRIED_DIGITS):
+        problem = TorusProblem(guess, _fitted(guess, digits), digits, report, keep)
+        converge(problem, digits, report)
+        return problem.guess(digits)
 
 
 def _require_room(guess: Guess, digits: int) -> None:
     """InputError for more harmonics, or powers of stretches, than can be taken."""
     _fitted(guess, digits)
-    harmonics = np.array(list(guess.coefficients), dtype=np.int64)
-    table = np.array(list(guess.coefficients.values())).astype(float)
-    there = projection(guess.chain, guess.seeds, harmonics)
+    torus = guess.torus
+    harmonics, table = canonical_signs(torus.harmonics), torus.cosines.astype(float)
+    there = projection(torus.chain, torus.seeds, harmonics)
     with mpmath.workdps(digits + CARRIED_DIGITS):
-        terms(guess.chain, _bits(table), _reach(there, table))
+        terms(torus.chain, _bits(table), _reach(there, table))
 
 
 def _bits(table: Floats) -> int:
@@ -225,34 +225,21 @@ def _reach(there: Projection, table: Floats) -> float:
     return float(NEAR_REACH * np.abs(stretches).sum(axis=0).max())
 
 
-def _reached(guess: Guess, digits: int, tell: Progress, keep: Keep) -> Guess:
-    """A guess of so many digits, with the harmonics that a fit expects; not checked."""
-    if digits // 2 > _digits_of(guess):
-        guess = _reached(guess, digits // 2, tell, keep)
-    with mpmath.workdps(digits + CARRIED_DIGITS):
-        problem = TorusProblem(guess, _fitted(guess, digits), digits, tell, keep)
-        converge(problem, digits, tell)
-        return problem.guess()
-
-
 def _fitted(guess: Guess, digits: int) -> Ints:
     """Harmonics expected above the last digit of the largest coefficient, and some more."""
-    sizes = {nu: max(abs(x) for x in row) for nu, row in guess.coefficients.items()}
-    largest = mpf(max(sizes.values()))
-    least = largest * mpmath.mpf(10) ** -_digits_of(guess)
-    pairs = ((nu, mpf(x)) for nu, x in sizes.items())
+    torus = guess.torus
+    sizes = np.abs(torus.cosines).max(axis=1)
+    largest = mpf(max(sizes))
+    least = largest * mpmath.mpf(10) ** -guess.digits
+    pairs = zip(map(tuple, torus.harmonics.tolist()), map(mpf, sizes), strict=True)
     heights = {nu: float(mpmath.log(x / largest)) for nu, x in pairs if x > least}
-    functions, s = count_points(guess.chain), len(guess.seeds)
+    functions, s = count_points(torus.chain), len(torus.seeds)
     depth = (digits + SPARE_DIGITS) * math.log(10)
     found, full = within_reach(heights, functions, s, depth, most=MOST_HARMONICS)
     if full:
         allowed = f"what {MOST_HARMONICS} harmonics, or a lattice that fits, can give"
         raise InputError("digits", digits, allowed, "take fewer, or smaller amplitudes")
     return found
-
-
-def _digits_of(guess: Guess) -> int:
-    return DOUBLE_DIGITS if guess.digits is None else guess.digits
 
 
 class TorusProblem(TruncatedProblem):
@@ -262,12 +249,13 @@ class TorusProblem(TruncatedProblem):
     """
 
     def __init__(
-        self, guess: Guess, harmonics: Ints, digits: int, tell: Progress, keep: Keep
+        self, guess: Guess, harmonics: Ints, digits: int, report: Progress, keep: Keep
     ) -> None:
-        self.start, self.chain, self.harmonics = guess, guess.chain, harmonics
-        self.digits, self.tell, self.keep = digits, tell, keep
+        self.start, self.harmonics = guess, harmonics
+        self.digits, self.report, self.keep = digits, report, keep
         self.steps = guess.steps
-        self.equation = InvarianceEquation(guess.chain, guess.seeds, harmonics)
+        torus = guess.torus
+        self.equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
         self.mask = self.equation.mask
         self._seeds = self.equation.seed_rows, self.equation.seed_columns
         table = self._known()
@@ -285,14 +273,13 @@ class TorusProblem(TruncatedProblem):
             self.coefficients[self._seeds] = [fixed(a) for a in held]
         self._amplitudes = self.coefficients[self._seeds]
         self._set_jacobian(doubles)
-        tell(f"{len(harmonics)} harmonics, {self.bits} bits", NO_FRACTION)
+        report(f"{len(harmonics)} harmonics, {self.bits} bits", NO_FRACTION)
 
     def _known(self) -> Any:
         """The coefficients of the guess at the harmonics, (H, C), 0 of others."""
-        known = self.start.coefficients
-        none = np.zeros(self.mask.shape[1])
-        rows = [known.get(tuple(nu), none) for nu in self.harmonics.tolist()]
-        return np.where(self.mask, np.array(rows, dtype=object), 0)
+        torus = self.start.torus
+        known = by_harmonic(torus.harmonics, torus.cosines.astype(object))
+        return np.where(self.mask, coefficients_at(self.harmonics, known), 0)
 
     def _set_force(self, doubles: Floats) -> None:
         box = Box(np.abs(self.harmonics).max(axis=0), whole=False)
@@ -302,7 +289,8 @@ class TorusProblem(TruncatedProblem):
 
     def _set_jacobian(self, doubles: Floats) -> None:
         guess = self.start
-        shifts = frequency_shifts(self.chain, guess.seeds, guess.frequencies)
+        chain, seeds = self.equation.chain, self.equation.seeds
+        shifts = frequency_shifts(chain, seeds, guess.frequencies)
         conditions = guess.prescribed.conditions()
         table = doubles.astype(np.longdouble)
         try:
@@ -323,11 +311,8 @@ class TorusProblem(TruncatedProblem):
         """What is prescribed and not held, as integers, (s,)."""
         prescribed = self.start.prescribed
         if prescribed.held_frequencies or prescribed.held_amplitudes:
-            return np.zeros(len(self.start.seeds), dtype=object)
-        every = np.ones(len(self.harmonics), dtype=bool)
-        fields = self._fields(every, self.numbers(), self.start.phases)
-        torus = Torus(**fields, digits=mpmath.mp.dps)
-        values = prescribed.values(torus)
+            return np.zeros(len(self.frequencies), dtype=object)
+        values = prescribed.values(self.guess(mpmath.mp.dps).torus)
         return np.array([self.force.fixed(mpmath.mpf(x)) for x in values], dtype=object)
 
     def solve(self, residual: Floats, conditions: Floats) -> tuple[Floats, Floats]:
@@ -341,18 +326,18 @@ class TorusProblem(TruncatedProblem):
 
     def after_step(self, digits: float) -> None:
         self._require_near()
-        self.keep(self._kept(math.floor(max(1, min(self.digits, digits)))))
+        self.keep(self._reached(math.floor(max(1, min(self.digits, digits)))))
 
     def _require_near(self) -> None:
         """Failure where the amplitude of a seed has left that of the guess."""
         reached = self.coefficients[self._seeds]
-        for q, old, new in zip(self.start.seeds, self._amplitudes, reached, strict=True):
+        for q, old, new in zip(self.equation.seeds, self._amplitudes, reached, strict=True):
             if not abs(old) < NEAR * abs(new) < NEAR**2 * abs(old):
                 before, now = (float(mpmath.ldexp(x, -self.bits)) for x in (old, new))
                 reason = f"A_{q} goes from {before:.3g} to {now:.3g}"
                 raise Failure(f"iterative refinement leads elsewhere: {reason}")
 
-    def _kept(self, digits: int) -> Reached:
+    def _reached(self, digits: int) -> Reached:
         return Reached(
             self.harmonics,
             self.coefficients,
@@ -362,41 +347,26 @@ class TorusProblem(TruncatedProblem):
             self.steps,
         )
 
-    @property
-    def exact_frequencies(self) -> tuple[Fraction, ...]:
-        """Those given, or those found."""
-        held = self.start.prescribed.held_frequencies
-        return held or _rational(self.frequencies, self.bits)
-
-    def numbers(self) -> Any:
-        """c as mpf, (H, C)."""
-        return from_integers(self.coefficients, np.asarray(-self.bits))
-
-    def guess(self) -> Guess:
-        """What was reached, to go on from with other harmonics."""
-        rows = map(tuple, self.harmonics.tolist())
-        return self.start._replace(
-            coefficients=dict(zip(rows, self.numbers(), strict=True)),
-            frequencies=self.exact_frequencies,
-            digits=self.digits,
-            steps=self.steps,
-        )
+    def guess(self, digits: int) -> Guess:
+        """What was reached, as a torus of so many digits to go on from with other harmonics."""
+        return self.start.moved(self._reached(digits))
 
     def extended(self, harmonics: Ints) -> TorusProblem:
         """With those, too, that a fit of what was reached expects."""
-        guess = self.guess()
+        guess = self.guess(self.digits)
         more = self.harmonics, _fitted(guess, self.digits), harmonics
         every = np.unique(np.concatenate(more), axis=0)
-        return TorusProblem(guess, every, self.digits, self.tell, self.keep)
+        return TorusProblem(guess, every, self.digits, self.report, self.keep)
 
     def truncation(self) -> Truncation:
         """At all harmonics of a box a quarter larger; its residual is the bound of the result."""
-        finer = self._finer()
+        torus = self.guess(self.digits).torus
+        finer = self._finer(torus.cosines.astype(float))
         wanted = canonical_signs(finer.box.harmonics)
         c = self.coefficients << CHECK_BITS
         force, off = finer.force(self.harmonics, c, wanted)
         rows = places_of(self.harmonics, wanted)
-        omega = np.array([finer.fixed(w) for w in self.exact_frequencies], dtype=object)
+        omega = np.array([finer.fixed(w) for w in torus.frequencies], dtype=object)
         rates = wanted.astype(object) @ omega
         divisors = ((rates**2) >> finer.bits)[:, None] - finer.squares(wanted)
         allowed = self.equation.projection.at(wanted).mask
@@ -404,7 +374,7 @@ class TorusProblem(TruncatedProblem):
         residual[rows] += (divisors[rows] * c) >> finer.bits
         rounding = self._rounding(rates[rows], c, finer.bits)
         total = max(abs(residual).sum(axis=0) + off + rounding)
-        bound = mpmath.ldexp(int(total), -finer.bits) / self._acceleration()
+        bound = mpmath.ldexp(int(total), -finer.bits) / _acceleration(torus)
         out = np.ones(len(wanted), dtype=bool)
         out[rows] = False
         largest = self.largest << CHECK_BITS
@@ -416,10 +386,10 @@ class TorusProblem(TruncatedProblem):
             residual=bound,
         )
 
-    def _finer(self) -> KroneckerForce:
+    def _finer(self, table: Floats) -> KroneckerForce:
         highest = np.ceil(CHECKED * np.abs(self.harmonics).max(axis=0)).astype(int)
         there = self.equation.projection
-        reach = _reach(there, self.in_doubles())
+        reach = _reach(there, table)
         box = Box(highest, whole=True)
         return KroneckerForce(there, box, self.bits + CHECK_BITS, reach)
 
@@ -430,36 +400,22 @@ class TorusProblem(TruncatedProblem):
         summed = ((of_divisors[:, None] * abs(c)) >> bits).sum(axis=0)
         return np.asarray(summed + 2 * len(c))
 
-    def in_doubles(self) -> Floats:
-        """The coefficients in doubles, (H, C)."""
-        return np.asarray(self.numbers(), dtype=float)
-
-    def _acceleration(self) -> float:
-        """The largest acceleration of a mode at some times: below the largest of all."""
-        t = np.linspace(0, 100 * np.pi / float(min(self.exact_frequencies)), SAMPLES)
-        every = np.ones(len(self.harmonics), dtype=bool)
-        doubles = Torus(**self._fields(every, self.in_doubles(), {}))
-        forces = self.chain.accelerations(doubles.Q(t))
-        return float(np.max(np.abs(forces)))
-
-    def _fields(self, kept: Any, table: Any, phases: dict[int, Any]) -> dict[str, Any]:
-        """Of a torus with coefficients (H, C) at the harmonics that are kept."""
-        return {
-            "chain": self.chain,
-            "seeds": self.start.seeds,
-            "frequencies": self.exact_frequencies,
-            "harmonics": self.harmonics[kept],
-            "cosines": table[kept],
-            "phases": phases,
-            "travels": self.chain.periodic,
-        }
-
     def result(self, left: Truncation) -> Torus[IterativeRefinement]:
         """The torus, without harmonics that are zero in fixed point."""
         kept = self.coefficients.any(axis=1)
+        torus: Torus[Any] = self.guess(self.digits).torus
         bound, error = with_digits((left.residual, left.error), self.digits)
-        return Torus(
-            **self._fields(kept, self.numbers(), self.start.phases),
-            digits=self.digits,
+        return replace(
+            torus,
+            harmonics=torus.harmonics[kept],
+            cosines=torus.cosines[kept],
             origin=IterativeRefinement(bound, error, self.steps),
         )
+
+
+def _acceleration(torus: Torus) -> float:
+    """The largest acceleration of a mode at some times: below the largest of all."""
+    t = np.linspace(0, 100 * np.pi / float(min(torus.frequencies)), SAMPLES)
+    doubles = replace(torus.in_doubles(), phases={})
+    forces = torus.chain.accelerations(doubles.Q(t))
+    return float(np.max(np.abs(forces)))

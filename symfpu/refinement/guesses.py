@@ -13,6 +13,7 @@ from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import mpf
 from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.numbers.typed import Number, exact
+from symfpu.refinement.harmonics import by_harmonic, coefficients_at
 from symfpu.refinement.lattice import Floats
 from symfpu.tori.torus import Torus, require_solution
 
@@ -73,3 +74,21 @@ def frequency_shifts(
         linear = [chain.linear_frequency(q) for q in seeds]
         pairs = zip(frequencies, linear, strict=True)
         return np.array([long(mpf(w) - x) for w, x in pairs])
+
+
+def extrapolated(before: Torus, last: Torus, ratio: float) -> Torus:
+    """The guess on the line through two tori, `ratio` of their distance beyond the second."""
+    omega = zip(before.frequencies, last.frequencies, strict=True)
+    frequencies = tuple(b + Fraction(ratio) * (b - a) for a, b in omega)
+    earlier = coefficients_at(last.harmonics, by_harmonic(before.harmonics, before.cosines))
+    cosines = last.cosines + ratio * (last.cosines - earlier)
+    phases = dict(last.phases)
+    return Torus(
+        last.chain,
+        last.seeds,
+        frequencies,
+        last.harmonics,
+        cosines,
+        phases,
+        travels=last.travels,
+    )

@@ -7,7 +7,10 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from symfpu.refinement.lattice import OVERSAMPLING, Floats, Ints
+from symfpu.numbers.arithmetic import Numbers
+from symfpu.refinement.lattice import OVERSAMPLING, Floats, Ints, canonical_signs
+
+Harmonic = tuple[int, ...]
 
 SMALLEST_KEPT = 1e-18  # of the largest coefficient: smaller ones of a guess are left out
 LARGEST_GRID = 60_000_000  # values of the functions; arrays of 480 MB
@@ -19,18 +22,24 @@ def unit_harmonics(s: int) -> list[tuple[int, ...]]:
     return [tuple(row) for row in np.eye(s, dtype=np.int64).tolist()]
 
 
-def known_rows(harmonics: Ints, cosines: Floats) -> dict[tuple[int, ...], Floats]:
-    """Coefficients by harmonic, the first number that is not 0 positive.
+def by_harmonic(harmonics: Ints, coefficients: Numbers) -> dict[Harmonic, Numbers]:
+    """Coefficients (C,) by harmonic, the first number that is not 0 positive."""
+    rows = map(tuple, canonical_signs(harmonics).tolist())
+    return dict(zip(rows, coefficients, strict=True))
 
-    A small part left out.
-    """
-    largest = np.abs(cosines).max()
-    rows: dict[tuple[int, ...], Floats] = {}
-    for nu, row in zip(harmonics.tolist(), cosines, strict=True):
-        if np.abs(row).max() > SMALLEST_KEPT * largest:
-            sign = -1 if next((n for n in nu if n), 1) < 0 else 1
-            rows[tuple(sign * n for n in nu)] = row
-    return rows
+
+def coefficients_at(harmonics: Ints, known: Mapping[Harmonic, Numbers]) -> Numbers:
+    """Those that are known by harmonic, 0 of others; (H, C)."""
+    nothing = 0 * next(iter(known.values()))
+    rows = map(tuple, canonical_signs(harmonics).tolist())
+    return np.array([known.get(nu, nothing) for nu in rows])
+
+
+def known_rows(harmonics: Ints, cosines: Floats) -> dict[Harmonic, Floats]:
+    """Coefficients in doubles by harmonic, a small part left out."""
+    least = SMALLEST_KEPT * np.abs(cosines).max()
+    kept = np.abs(cosines).max(axis=1) > least
+    return by_harmonic(harmonics[kept], cosines[kept])
 
 
 def chosen_harmonics(

@@ -21,7 +21,7 @@ from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.numbers.arithmetic import mpf, text
 from symfpu.numbers.long_doubles import DIGITS, rational
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.harmonics import chosen_harmonics, known_rows
+from symfpu.refinement.harmonics import chosen_harmonics, coefficients_at, known_rows
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.memory import least_sizes, require_memory, sizes_of
@@ -104,7 +104,7 @@ class Search:
             if attempt:
                 least = self.tolerance * MARGIN / 10**attempt
                 harmonics, full = self._polytope(known, least, self.most)
-            choice = Widened(harmonics, _rows(known, harmonics), full)
+            choice = Widened(harmonics, _guess(known, harmonics), full)
             solved = self._solved(choice, shifts, SETTLED)
             if solved.failure or solved.residual <= self.tolerance:
                 return replace(solved, reached=reached)
@@ -127,7 +127,7 @@ class Search:
         """The same from a small polytope on, or from a large one where that is too small."""
         for first in FIRST_POLYTOPE, LARGEST_POLYTOPE:
             harmonics, _ = self._polytope(known, self.tolerance * MARGIN, first)
-            choice = Widened(harmonics, _rows(known, harmonics), full=False)
+            choice = Widened(harmonics, _guess(known, harmonics), full=False)
             solved = self._widening(choice, shifts)
             if not solved.failure or solved.reached or self.most < LARGEST_POLYTOPE:
                 break
@@ -229,11 +229,9 @@ class Search:
         return replace(solved, doubt=doubt)
 
 
-def _rows(known: dict[tuple[int, ...], Floats], harmonics: Ints) -> Floats:
+def _guess(known: dict[tuple[int, ...], Floats], harmonics: Ints) -> Floats:
     """Coefficients of harmonics, 0 where none is known; (H, C) in long doubles."""
-    none = np.zeros(len(next(iter(known.values()))))
-    rows = [known.get(tuple(nu), none) for nu in harmonics.tolist()]
-    return np.array(rows, dtype=np.longdouble)
+    return coefficients_at(harmonics, known).astype(np.longdouble)
 
 
 def _frequencies(

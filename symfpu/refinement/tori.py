@@ -15,8 +15,8 @@ from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 from symfpu.refinement.digits import (
+    Guess,
     IterativeRefinement,
-    guess_of,
     require_digits,
     torus_to_digits,
 )
@@ -158,7 +158,7 @@ def refine(
     path = None if file is None else checkpoint_path(file)
     near = _near(torus, prescribed, how)
     try:
-        guess = guess_of(near, prescribed)
+        guess = Guess(near, prescribed)
         return torus_to_digits(guess, digits, path, progress or unheard)
     except Failure as failure:
         advice = DEGENERATE if prescribed.held_frequencies else NEARER

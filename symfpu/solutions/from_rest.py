@@ -23,8 +23,7 @@ from symfpu.errors import (
 )
 from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.typed import exact
-from symfpu.refinement.extrapolation import extrapolated
-from symfpu.refinement.guesses import frequency_shifts
+from symfpu.refinement.guesses import extrapolated, frequency_shifts
 from symfpu.refinement.prescribed import Prescribed
 from symfpu.refinement.refined_torus import USEFUL, Newton, NoTorus
 from symfpu.refinement.tori import refined_in_doubles

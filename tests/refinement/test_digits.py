@@ -10,7 +10,7 @@ import pytest
 import symfpu
 from symfpu import BundleError, Chain, InputError, NoTorus, actions, load, refine, save
 from symfpu.refinement import iterative_refinement
-from symfpu.refinement.digits import TorusProblem, guess_of
+from symfpu.refinement.digits import Guess, TorusProblem
 from symfpu.refinement.prescribed import Frequencies
 from symfpu.refinement.refinement_file import no_file, whole, words
 from tests.oracles.oscillators import duffing
@@ -162,7 +162,7 @@ def test_toda_has_the_energy_and_actions_of_the_spectral_curve():
 
 def test_a_wrong_digit_is_seen():
     torus = small(20)
-    guess = guess_of(torus, Frequencies(torus.chain, torus.seeds, torus.frequencies))
+    guess = Guess(torus, Frequencies(torus.chain, torus.seeds, torus.frequencies))
     with mpmath.workdps(40):
         problem = TorusProblem(guess, torus.harmonics, 20, unheard, no_file)
         before = problem.truncation()
@@ -176,7 +176,7 @@ def test_a_wrong_digit_is_seen():
 def test_the_bound_of_a_breather_sees_a_digit_in_the_thirtieth_place():
     orbit = symfpu.torus(Chain(6, alpha="0.4", beta="0.2"), (5,), amplitudes={5: "0.6"})
     with mpmath.workdps(60):
-        guess = guess_of(orbit, Frequencies(orbit.chain, orbit.seeds, orbit.frequencies))
+        guess = Guess(orbit, Frequencies(orbit.chain, orbit.seeds, orbit.frequencies))
         problem = TorusProblem(guess, np.arange(61)[:, None], 30, unheard, no_file)
         iterative_refinement.converge(problem, 40, unheard)
         problem.coefficients[3, 4] += problem.largest >> 100

@@ -8,7 +8,7 @@ import pytest
 
 import symfpu
 from symfpu import Chain, InputError, actions, load, refine, save, toda_torus, unfold
-from symfpu.refinement.digits import TorusProblem, guess_of
+from symfpu.refinement.digits import Guess, TorusProblem
 from symfpu.refinement.prescribed import Frequencies
 from symfpu.refinement.refinement_file import no_file
 from tests.refinement.test_digits import ten, unheard
@@ -115,8 +115,8 @@ def test_more_digits_continue_fewer_and_amplitudes_lead_back_to_frequencies(tmp_
 def test_a_wrong_digit_is_seen():
     torus = precise("two", 20)
     with mpmath.workdps(40):
-        guess = guess_of(torus, Frequencies(torus.chain, torus.seeds, torus.frequencies))
-        problem = TorusProblem(guess, np.array(list(guess.coefficients)), 20, unheard, no_file)
+        guess = Guess(torus, Frequencies(torus.chain, torus.seeds, torus.frequencies))
+        problem = TorusProblem(guess, torus.harmonics, 20, unheard, no_file)
         before = problem.truncation()
         problem.coefficients[problem.equation.seed_rows[0], 0] += problem.largest >> 50
         spoilt = problem.truncation()
