@@ -9,6 +9,8 @@ travel, and those of the fixed ends where they stand: then the ring has twice th
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -22,7 +24,7 @@ from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.harmonics import by_harmonic, unit_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.refinement.newton import responses
+from symfpu.refinement.linear_system import Jacobian
 from symfpu.tori.torus import Torus
 from symfpu.tori.unfolding import folded
 
@@ -105,24 +107,45 @@ def _changes(torus: Torus) -> _Changes:
         return half._replace(by_action=2 * half.by_action)
     equation, table = equation_of(torus)
     cosines = table.astype(np.longdouble)
-    shifts = shifts_of(torus)
-    amplitudes = seed_amplitudes(equation, cosines)
-    conditions = [amplitude(i, A, len(amplitudes)) for i, A in enumerate(amplitudes)]
-    try:
-        with np.errstate(divide="ignore", invalid="ignore"):
-            by_cosine, by_shift = responses(equation, conditions, cosines, shifts)
-    except (np.linalg.LinAlgError, ValueError) as failure:
-        raise NoTwist(f"Newton's matrix is singular ({failure})") from failure
+    with singular_without_twist():
+        jacobian = jacobian_of_amplitudes(torus, equation, cosines)
+        by_cosine, by_shift = jacobian.responses(len(torus.seeds))
     omega = np.array([float(w) for w in torus.frequencies])
     known = cosines.astype(float)
-    by_action = []
-    for change, turned in zip(by_cosine, by_shift, strict=True):
-        mixed = 2 * (known * change).sum(axis=1)
-        squares = (known**2).sum(axis=1)
-        moved = half_weighted(equation.harmonics, omega, mixed)
-        faster = half_weighted(equation.harmonics, turned, squares)
-        by_action.append(moved + faster)
+    by_action = [
+        action_change(equation.harmonics, omega, known, *change)
+        for change in zip(by_cosine, by_shift, strict=True)
+    ]
     return _Changes(equation, known, by_cosine, by_shift, np.array(by_action))
+
+
+def jacobian_of_amplitudes(
+    torus: Torus, equation: InvarianceEquation, cosines: Floats
+) -> Jacobian:
+    """Newton's matrix at a torus in long doubles where all amplitudes are held."""
+    held = enumerate(seed_amplitudes(equation, cosines))
+    conditions = [amplitude(i, A, len(torus.seeds)) for i, A in held]
+    return Jacobian(equation, conditions, cosines, shifts_of(torus))
+
+
+@contextmanager
+def singular_without_twist() -> Iterator[None]:
+    """NoTwist where Newton's matrix is singular."""
+    try:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            yield
+    except (np.linalg.LinAlgError, ValueError) as failure:
+        raise NoTwist(f"Newton's matrix is singular ({failure})") from failure
+
+
+def action_change(
+    harmonics: Ints, omega: Numbers, cosines: Numbers, by_cosine: Numbers, by_shift: Numbers
+) -> Numbers:
+    """What the actions change by with cosines (H, C) and frequencies (s,); shape (s,)."""
+    mixed = 2 * (cosines * by_cosine).sum(axis=1)
+    squares = (cosines**2).sum(axis=1)
+    moved = half_weighted(harmonics, omega, mixed)
+    return np.asarray(moved + half_weighted(harmonics, by_shift, squares))
 
 
 def equation_of(torus: Torus) -> tuple[InvarianceEquation, Numbers]:

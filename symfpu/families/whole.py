@@ -18,7 +18,7 @@ from symfpu.breathers.curve import unlike
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.refinement.newton import responses
+from symfpu.refinement.linear_system import Jacobian
 from symfpu.refinement.refined_torus import Newton, NoTorus
 from symfpu.tori.torus import Torus
 
@@ -48,7 +48,7 @@ def whole(torus: Torus[Newton], conditions: Sequence[Condition]) -> Whole:
     cosines, shifts = table.astype(np.longdouble), shifts_of(torus)
     try:
         with np.errstate(divide="ignore", invalid="ignore"):
-            changes, _ = responses(equation, conditions, cosines, shifts, first=1)
+            changes, _ = Jacobian(equation, conditions, cosines, shifts).responses(1)
     except (np.linalg.LinAlgError, ValueError) as failure:
         reason = f"the tangent of the family is not determined ({failure})"
         raise NoTorus(reason, torus, torus.residual()) from failure

@@ -42,7 +42,7 @@ from symfpu.refinement.iterative_refinement import (
 )
 from symfpu.refinement.kronecker import Box, Integers, KroneckerForce
 from symfpu.refinement.lattice import Floats, Ints, canonical_signs, places_of
-from symfpu.refinement.newton import Correction
+from symfpu.refinement.linear_system import Jacobian
 from symfpu.refinement.prescribed import Prescribed
 from symfpu.refinement.refinement_file import Keep, Reached, RefinementFile, no_file
 from symfpu.results.field import Field
@@ -294,7 +294,7 @@ class TorusProblem(TruncatedProblem):
         conditions = guess.prescribed.conditions()
         table = doubles.astype(np.longdouble)
         try:
-            self.jacobian = Correction(self.equation, conditions, table, shifts)
+            self.jacobian = Jacobian(self.equation, conditions, table, shifts)
         except (np.linalg.LinAlgError, ValueError) as failure:
             raise Failure(f"the Jacobian is singular ({failure})") from failure
 
@@ -317,7 +317,7 @@ class TorusProblem(TruncatedProblem):
 
     def solve(self, residual: Floats, conditions: Floats) -> tuple[Floats, Floats]:
         """The Jacobian's, with frequencies or amplitudes as they are where they are held."""
-        by_cosine, by_shift, _ = self.jacobian(residual, ACCURACY, conditions)
+        by_cosine, by_shift = self.jacobian.correction(residual, conditions, ACCURACY)
         if self.start.prescribed.held_frequencies is not None:
             return by_cosine, np.zeros(len(by_shift))
         if self.start.prescribed.held_amplitudes is not None:

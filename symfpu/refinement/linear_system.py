@@ -1,4 +1,4 @@
-"""The linear system of a step of Newton's method on a torus, and its preconditioner.
+"""The linear system of a step of Newton's method on a torus: Krylov solutions, preconditioned.
 
 The preconditioner is exact on a block, the unknowns with the smallest divisors (seeds and near
 resonances) with shifts and conditions, and divides by the divisors elsewhere. Small systems fit
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,11 @@ from symfpu.refinement.lattice import Floats, Ints
 LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
 # divisors up to so many times what the coupling adds to them belong to the block
 NEARNESS = 3.0
+KRYLOV, RESTARTS = 60, 4
+ACCURACY = 1e-8  # of a Krylov solution
+# of the right-hand side, up to which what a Krylov solution leaves makes a step like any other
+INEXACT = 0.5
+CORRECTIONS = 5  # of the solution for a derivative
 ROWS = 256  # of the block, to which what is outside is added at once
 
 
@@ -162,6 +168,112 @@ class Preconditioner:
         result[:-s] = far - self.inverse * driven
         result[self.inside] = near
         return result
+
+
+class Solution(NamedTuple):
+    """Of the linear system: the changes, how many products they took, and what they leave.
+
+    left : of the right-hand side, at most about, relative.
+    """
+
+    change: Floats
+    products: int
+    left: float
+
+
+class Jacobian:
+    """Newton's matrix at one iterate, factored once and solved for many right-hand sides.
+
+    It also corrects residuals that were taken in more digits: the matrix of doubles is as good as
+    it was, whatever the size of the residual.
+    """
+
+    def __init__(
+        self,
+        equation: InvarianceEquation,
+        conditions: Sequence[Condition],
+        cosines: Floats,
+        shifts: Floats,
+    ) -> None:
+        self._system = LinearSystem(equation, conditions, cosines, shifts)
+        self._preconditioner = Preconditioner(self._system)
+        self.size = int(equation.mask.sum()) + len(shifts)
+
+    def approximate(self, right: Floats, accuracy: float) -> Solution:
+        """The solution for a right-hand side, as far as it is found."""
+        from scipy.sparse.linalg import LinearOperator, gmres
+
+        count, preconditioner = 0, self._preconditioner
+        if preconditioner.whole:
+            return Solution(preconditioner(right), 0, 0.0)
+
+        def preconditioned(vector: Floats) -> Floats:
+            nonlocal count
+            count += 1
+            return self._system.product(preconditioner(vector))
+
+        operator = LinearOperator((len(right), len(right)), preconditioned, dtype=float)
+        limits = {"rtol": accuracy, "atol": 0.0, "restart": KRYLOV, "maxiter": RESTARTS}
+        solution, info = gmres(operator, right, **limits)
+        left = accuracy
+        if info:
+            missed = operator @ solution - right
+            left = float(np.linalg.norm(missed) / np.linalg.norm(right))
+        return Solution(preconditioner(solution), count, left)
+
+    def solve(self, right: Floats, accuracy: float = ACCURACY) -> Floats:
+        """The same; LinAlgError where more than half of the right-hand side is left."""
+        found = self.approximate(right, accuracy)
+        if not found.left <= INEXACT:
+            raise np.linalg.LinAlgError(unsolved_words(found.products, found.left))
+        return found.change
+
+    def to_rounding(self, right: Floats) -> Floats:
+        """The same with corrections until they no longer shrink."""
+        total, left, before = np.zeros(len(right)), right, np.inf
+        for _ in range(CORRECTIONS):
+            total = total + self.solve(left)
+            left = right - self._system.product(total)
+            size = float(np.abs(left).max())
+            if size > before / 2:
+                break
+            before = size
+        return total
+
+    def responses(self, asked: int) -> tuple[Floats, Floats]:
+        """Derivatives of a torus by the values of its first conditions: of cosines, and of shifts.
+
+        Shapes (asked, H, C) and (asked, s), to rounding. Raises LinAlgError where it is singular.
+        """
+        changes = []
+        for place in range(asked):
+            right = np.zeros(self.size)
+            right[self.size - self._system.s + place] = 1.0
+            changes.append(self.parts(self.to_rounding(right)))
+        by_cosine, by_shift = zip(*changes, strict=True)
+        return np.array(by_cosine), np.array(by_shift)
+
+    def correction(
+        self, residual: Floats, conditions: Floats, accuracy: float
+    ) -> tuple[Floats, Floats]:
+        """Changes of coefficients (H, C) and shifts (s,) that take a residual (H, C) away.
+
+        conditions : what they leave, taken away too; (s,).
+        """
+        right = -np.concatenate([residual[self._system.mask], conditions])
+        return self.parts(self.solve(right, accuracy))
+
+    def parts(self, change: Floats) -> tuple[Floats, Floats]:
+        """Of a solution: coefficients (H, C), 0 where none is unknown, and shifts (s,)."""
+        mask, s = self._system.mask, self._system.s
+        by_cosine = np.zeros(mask.shape)
+        by_cosine[mask] = change[:-s]
+        return by_cosine, change[-s:]
+
+
+def unsolved_words(products: int, left: float) -> str:
+    """Why a step is none."""
+    return f"{products} products leave {left:.2g} of the right-hand side of Newton's method"
 
 
 def _weights(equation: InvarianceEquation, divisors: Floats) -> Floats:

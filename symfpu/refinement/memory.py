@@ -16,8 +16,7 @@ from symfpu.errors import TorusTooLarge
 from symfpu.refinement.couplings import MOST_SLOPES
 from symfpu.refinement.invariance import PORTION, InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints, Lattice
-from symfpu.refinement.linear_system import SMALLEST_BLOCK, block_size
-from symfpu.refinement.newton import KRYLOV
+from symfpu.refinement.linear_system import KRYLOV, SMALLEST_BLOCK, block_size
 from symfpu.tori.columns import CHUNK
 from symfpu.tori.torus import GRID_POINTS, angles_at_once, points_of_each_angle
 

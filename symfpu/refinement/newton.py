@@ -19,12 +19,13 @@ from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats
-from symfpu.refinement.linear_system import LinearSystem, Preconditioner
+from symfpu.refinement.linear_system import (
+    ACCURACY,
+    INEXACT,
+    Jacobian,
+    unsolved_words,
+)
 
-KRYLOV, RESTARTS = 60, 4
-ACCURACY = 1e-8  # of a Krylov solution
-# of the right-hand side, up to which what a Krylov solution leaves makes a step like any other
-INEXACT = 0.5
 FALL = 0.9  # of the error, at least, by a step that leaves more
 # errors by rounding up to which a force is taken in doubles: of an amplitude, relative, and of
 # other coefficients, relative to the largest
@@ -32,7 +33,6 @@ AMPLITUDES, COEFFICIENTS = 1e-14, 1e-13
 # relative change to come that ends the iteration, and the one that does when it no longer shrinks
 STEP, ROUNDING_STEP = 1e-16, 1e-9
 ITERATIONS = 15
-CORRECTIONS = 5  # of the solution for a derivative
 GROWTH = 30.0  # factor by which iterates may leave the size of the guess
 
 
@@ -153,17 +153,18 @@ def newton(
         if error < best[0]:
             best = (error, cosines, shifts)
         if left > INEXACT and not gained:
-            return failed(_unsolved(products, left), unsolved=True)
-        system = LinearSystem(equation, conditions, cosines, shifts)
+            return failed(unsolved_words(products, left), unsolved=True)
         right = -np.concatenate([imbalance, values])
         try:
-            change, products, left = _change(system, right, aim.krylov)
-        except np.linalg.LinAlgError as failure:
-            return failed(str(failure), unsolved=True)
-        moved = np.zeros(cosines.shape)
-        moved[equation.mask] = change[: -len(shifts)]
-        cosines = cosines + moved
-        shifts = shifts + change[-len(shifts) :]
+            moved, turned, products, left = _step(
+                equation, conditions, cosines, shifts, right, aim.krylov
+            )
+        except (np.linalg.LinAlgError, ValueError) as failure:
+            reason = f"the matrix of Newton's method is singular ({failure})"
+            return failed(reason, unsolved=True)
+        if not left < 1:
+            return failed(unsolved_words(products, left), unsolved=True)
+        cosines, shifts = cosines + moved, shifts + turned
         relative = float(np.abs(moved).max() / np.abs(cosines).max())
         steps.append(NewtonStep(residual, relative, violation, products))
         line = f"step {len(steps)}: residual {residual:.1e}, change {relative:.1e}"
@@ -179,8 +180,21 @@ def newton(
     return failed(f"no convergence in {ITERATIONS} steps")
 
 
-def _unsolved(products: int, left: float) -> str:
-    return f"{products} products leave {left:.2g} of the right-hand side of Newton's method"
+def _step(
+    equation: InvarianceEquation,
+    conditions: Sequence[Condition],
+    cosines: Floats,
+    shifts: Floats,
+    right: Floats,
+    accuracy: float,
+) -> tuple[Floats, Floats, int, float]:
+    """Changes of coefficients (H, C) and shifts (s,), products, and what is left of the right.
+
+    By a Jacobian that is not kept: it is large.
+    """
+    jacobian = Jacobian(equation, conditions, cosines, shifts)
+    found = jacobian.approximate(right, accuracy)
+    return *jacobian.parts(found.change), found.products, found.left
 
 
 def _sizes(equation: InvarianceEquation, cosines: Floats) -> dict[str, float]:
@@ -198,145 +212,3 @@ def _runs_away(sizes: dict[str, float], reached: dict[str, float], growth: float
         if not old / growth < new < old * growth:
             return f"{name} goes from {old:.3g} to {new:.3g}"
     return ""
-
-
-class Solution(NamedTuple):
-    """Of the linear system: the changes, how many products they took, and what they leave.
-
-    left : of the right-hand side, at most about, relative.
-    """
-
-    change: Floats
-    products: int
-    left: float
-
-
-def _solved(
-    system: LinearSystem,
-    preconditioner: Preconditioner,
-    right: Floats,
-    accuracy: float,
-) -> Solution:
-    """The solution of the system for a right-hand side, as far as it is found."""
-    from scipy.sparse.linalg import LinearOperator, gmres
-
-    count = 0
-    if preconditioner.whole:
-        return Solution(preconditioner(right), 0, 0.0)
-
-    def preconditioned(vector: Floats) -> Floats:
-        nonlocal count
-        count += 1
-        return system.product(preconditioner(vector))
-
-    operator = LinearOperator((len(right), len(right)), matvec=preconditioned, dtype=float)
-    limits = {"rtol": accuracy, "atol": 0.0, "restart": KRYLOV, "maxiter": RESTARTS}
-    solution, info = gmres(operator, right, **limits)
-    left = accuracy
-    if info:
-        missed = operator @ solution - right
-        left = float(np.linalg.norm(missed) / np.linalg.norm(right))
-    return Solution(preconditioner(solution), count, left)
-
-
-def _change(system: LinearSystem, right: Floats, accuracy: float) -> Solution:
-    """A step, as far as it is found; LinAlgError with the reason where there is none."""
-    try:
-        found = _solved(system, Preconditioner(system), right, accuracy)
-    except (np.linalg.LinAlgError, ValueError) as failure:
-        reason = f"the matrix of Newton's method is singular ({failure})"
-        raise np.linalg.LinAlgError(reason) from failure
-    if not found.left < 1:
-        raise np.linalg.LinAlgError(_unsolved(found.products, found.left))
-    return found
-
-
-def _solution(
-    system: LinearSystem,
-    preconditioner: Preconditioner,
-    right: Floats,
-    accuracy: float = ACCURACY,
-) -> Solution:
-    """The same; LinAlgError where more than half of the right-hand side is left."""
-    found = _solved(system, preconditioner, right, accuracy)
-    if not found.left <= INEXACT:
-        raise np.linalg.LinAlgError(_unsolved(found.products, found.left))
-    return found
-
-
-def responses(
-    equation: InvarianceEquation,
-    conditions: Sequence[Condition],
-    cosines: Floats,
-    shifts: Floats,
-    *,
-    first: int | None = None,
-) -> tuple[Floats, Floats]:
-    """Derivatives of a torus by the values of its conditions: of cosines, and of shifts.
-
-    Shapes (s, H, N-1) and (s, s), the condition first: Newton's matrix solved for each of them,
-    with corrections until they no longer shrink. Raises LinAlgError where it is singular.
-
-    first : how many of the conditions are asked for, from the first on; default all.
-    """
-    system = LinearSystem(equation, conditions, cosines, shifts)
-    preconditioner = Preconditioner(system)
-    count, s = int(system.mask.sum()), len(shifts)
-    asked = s if first is None else first
-    by_cosine, by_shift = np.zeros((asked, *system.mask.shape)), np.zeros((asked, s))
-    for place in range(asked):
-        right = np.zeros(count + s)
-        right[count + place] = 1.0
-        change = _corrected(system, preconditioner, right)
-        by_cosine[place][system.mask] = change[:count]
-        by_shift[place] = change[count:]
-    return by_cosine, by_shift
-
-
-def _corrected(
-    system: LinearSystem, preconditioner: Preconditioner, right: Floats
-) -> Floats:
-    """The solution to rounding."""
-    total, left, before = np.zeros(len(right)), right, np.inf
-    for _ in range(CORRECTIONS):
-        total = total + _solution(system, preconditioner, left).change
-        left = right - system.product(total)
-        size = float(np.abs(left).max())
-        if size > before / 2:
-            break
-        before = size
-    return total
-
-
-class Correction:
-    """Newton's matrix at one iterate, factored once and solved for many right-hand sides.
-
-    What corrects residuals that were taken in more digits: the matrix of doubles is as good as it
-    was, whatever the size of the residual.
-    """
-
-    def __init__(
-        self,
-        equation: InvarianceEquation,
-        conditions: Sequence[Condition],
-        cosines: Floats,
-        shifts: Floats,
-    ) -> None:
-        self._system = LinearSystem(equation, conditions, cosines, shifts)
-        self._preconditioner = Preconditioner(self._system)
-
-    def __call__(
-        self, imbalance: Floats, accuracy: float, conditions: Floats
-    ) -> tuple[Floats, Floats, int]:
-        """Changes of coefficients (H, C) and shifts (s,) that take an imbalance (H, C) away.
-
-        conditions : what they leave, taken away too; (s,). The last result: products with the
-        derivative.
-        """
-        mask, s = self._system.mask, self._system.s
-        right = -np.concatenate([imbalance[mask], conditions])
-        found = _solution(self._system, self._preconditioner, right, accuracy)
-        change, products = found.change, found.products
-        by_cosine = np.zeros(mask.shape)
-        by_cosine[mask] = change[:-s]
-        return by_cosine, change[-s:], products

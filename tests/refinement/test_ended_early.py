@@ -8,7 +8,7 @@ import symfpu
 from symfpu import Chain, NoTorus, refine
 from symfpu.borders import newton_end
 from symfpu.borders.point import Ray
-from symfpu.refinement import linear_system, newton, refined_torus
+from symfpu.refinement import linear_system, refined_torus
 from symfpu.refinement.refined_torus import ENDED_EARLY, USEFUL, ended_early
 from tests.tolerances import REFINED_COEFFICIENT
 
@@ -107,14 +107,14 @@ def test_the_torus_of_fewer_harmonics_is_given_if_it_is_of_use(solver, monkeypat
 def whole_then_none(monkeypatch):
     """Parts of a solver for which every system with the first choice of harmonics is solved, and none with the second."""
     sizes = []
-    solved = newton._solved
+    solved = linear_system.Jacobian.approximate
 
-    def counted(system, *rest):
-        sizes.append(system.mask.size)
-        return solved(system, *rest)
+    def counted(jacobian, *rest):
+        sizes.append(jacobian.size)
+        return solved(jacobian, *rest)
 
     with monkeypatch.context() as here:
-        here.setattr(newton, "_solved", counted)
+        here.setattr(linear_system.Jacobian, "approximate", counted)
         two_choices_of_harmonics()
     return [1] * sizes.count(sizes[0]) + [0.0]
 
