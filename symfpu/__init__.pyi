@@ -58,7 +58,7 @@ from symfpu.tori.verdict import assess as assess
 
 # tori by Newton's method
 from symfpu.refinement.digits import IterativeRefinement as IterativeRefinement
-from symfpu.refinement.refined_torus import Newton as Newton
+from symfpu.refinement.newton import Newton as Newton
 from symfpu.refinement.tori import refine as refine
 
 # theorems about tori
@@ -238,7 +238,7 @@ from symfpu.errors import UndeterminedAmplitudes as UndeterminedAmplitudes
 from symfpu.families.family import NotInFamily as NotInFamily
 from symfpu.files.archive import BundleError as BundleError
 from symfpu.localization.recurrence import NoRecurrence as NoRecurrence
-from symfpu.refinement.refined_torus import NoTorus as NoTorus
+from symfpu.refinement.tori import NoTorus as NoTorus
 from symfpu.integrable.discriminant import NoDiscriminant as NoDiscriminant
 from symfpu.integrable.quadrature import BandsTooNarrow as BandsTooNarrow
 from symfpu.integrable.search import NoTodaTorus as NoTodaTorus

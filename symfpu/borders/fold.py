@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.refined_torus import Newton
-from symfpu.refinement.tori import shifts_of
+from symfpu.refinement.newton import Newton
 from symfpu.tori.torus import Torus
 
 MOST_UNKNOWNS = 4000  # of a dense matrix

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from symfpu.numbers.counted import short
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.resonances import NearResonance
 from symfpu.refinement.tori import NoTorus
 from symfpu.tori.torus import Torus

@@ -20,7 +20,7 @@ from symfpu.breathers.passage import AmplitudeGoal, EnergyGoal, first_passage
 from symfpu.normal.modes import NoNormalModes
 from symfpu.normal.search import normal_modes
 from symfpu.numbers.counted import short
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.resonances import NearResonance
 from symfpu.refinement.search import ALL_THAT_FIT
 from symfpu.refinement.tori import NoTorus, ended_early, refine

@@ -33,8 +33,7 @@ from symfpu.files.archive import Archive, Json
 from symfpu.numbers.arithmetic import Numbers, with_digits
 from symfpu.numbers.typed import fraction, fraction_text, integer
 from symfpu.refinement.digits import IterativeRefinement
-from symfpu.refinement.newton import NewtonStep
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton, NewtonStep
 from symfpu.refinement.resonances import NearResonance
 from symfpu.tori.columns import columns_of
 from symfpu.tori.resummation import Resummed

@@ -47,7 +47,7 @@ from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_folder, write_rows
 from symfpu.numbers.counted import counted
 from symfpu.refinement.harmonics import MOST_HARMONICS
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.reports.family import family_table, family_text
 from symfpu.reports.solution import refined_text, solution_record, solution_text

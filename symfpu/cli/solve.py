@@ -38,7 +38,7 @@ from symfpu.cli.tori import print_solution, verdict_of
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.reports.series import assessment_text
 from symfpu.reports.solution import refined_text, solution_record, solution_text
 from symfpu.saved.results import save

@@ -8,7 +8,7 @@ from symfpu.bundles.bundle import Bundle
 from symfpu.cli.terminal import FileArgument, JsonOption, path_named, print_json, say, warn
 from symfpu.cli.verbs import app
 from symfpu.numbers.arithmetic import text
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.reports.solution import refined_text, solution_text
 from symfpu.saved.results import load
 from symfpu.tori.from_series import FromSeries

@@ -15,8 +15,8 @@ from symfpu.families.members import Level, Member, linear_by_mode
 from symfpu.files.progress import Progress
 from symfpu.refinement.conditions import Condition, amplitude, ratio_conditions
 from symfpu.refinement.harmonics import by_harmonic, coefficients_at
-from symfpu.refinement.refined_torus import TOLERANCE, Newton, NoTorus, refined_torus
-from symfpu.refinement.tori import refine
+from symfpu.refinement.newton import Newton
+from symfpu.refinement.tori import TOLERANCE, NoTorus, refine, refined_torus
 from symfpu.tori.short_series import shifts_by_squares, short_series
 from symfpu.tori.torus import Torus
 

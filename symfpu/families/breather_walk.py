@@ -28,7 +28,8 @@ from symfpu.families.members import Event, Level, linear_by_mode
 from symfpu.files.progress import Progress
 from symfpu.refinement.conditions import Condition, plane
 from symfpu.refinement.guesses import shifts_of
-from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus
+from symfpu.refinement.newton import Newton
+from symfpu.refinement.tori import NoTorus, refined_torus
 from symfpu.tori.torus import Torus
 
 SAME = 1e-6  # of the size: members that are nearer are one

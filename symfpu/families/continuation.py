@@ -19,7 +19,8 @@ from symfpu.files.progress import Progress
 from symfpu.refinement.conditions import Condition, plane, ratio_conditions
 from symfpu.refinement.guesses import extrapolated, shifts_of
 from symfpu.refinement.lattice import Floats
-from symfpu.refinement.refined_torus import Newton, NoTorus, refined_torus
+from symfpu.refinement.newton import Newton
+from symfpu.refinement.tori import NoTorus, refined_torus
 from symfpu.tori.torus import Torus
 
 FIRST_STEP, LARGEST_STEP, SMALLEST_STEP = 0.3, 0.6, 1e-3  # along the way

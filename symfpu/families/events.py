@@ -23,7 +23,8 @@ from symfpu.numbers.long_doubles import DIGITS, long
 from symfpu.refinement.conditions import resonance
 from symfpu.refinement.guesses import extrapolated, shifts_of
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.refinement.refined_torus import Newton, NoTorus
+from symfpu.refinement.newton import Newton
+from symfpu.refinement.tori import NoTorus
 from symfpu.tori.torus import Torus
 
 # of the largest coefficient: a divisor of a smaller one may change its sign unnoticed

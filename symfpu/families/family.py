@@ -22,8 +22,8 @@ from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, double, exact
 from symfpu.refinement.conditions import frequency, ratio_conditions
 from symfpu.refinement.guesses import extrapolated
-from symfpu.refinement.refined_torus import Newton, refined_torus
-from symfpu.refinement.tori import refine
+from symfpu.refinement.newton import Newton
+from symfpu.refinement.tori import refine, refined_torus
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, chain_fields, seeds_field
 from symfpu.results.grid import Grid, Variable

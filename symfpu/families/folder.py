@@ -43,7 +43,7 @@ from symfpu.files.sealed import document_in, read_bytes, write_sealed
 from symfpu.files.writing import made_folder
 from symfpu.normal.frequencies import NormalFrequencies
 from symfpu.numbers.typed import Number, double, exact, integer
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus, comes_from
 

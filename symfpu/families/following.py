@@ -33,7 +33,8 @@ from symfpu.numbers.counted import counted
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, integer
 from symfpu.refinement.conditions import ratio_conditions
-from symfpu.refinement.refined_torus import TOLERANCE, Newton, NoTorus
+from symfpu.refinement.newton import Newton
+from symfpu.refinement.tori import TOLERANCE, NoTorus
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.short_series import short_series
 from symfpu.tori.torus import Torus, comes_from

@@ -14,7 +14,7 @@ from symfpu.breathers.from_rest import AVOIDED, FOLLOWED, NARROW, PASSED
 from symfpu.chain.chain import Chain
 from symfpu.normal.frequencies import NormalFrequencies
 from symfpu.refinement.conditions import Condition, EnergyLevel
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, exact_by_seed, fields_of, numbers_by_seed
 from symfpu.results.grid import Grid, Variable

@@ -44,7 +44,7 @@ from symfpu.normal.resonances import (
 )
 from symfpu.normal.search import followed_modes
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.refined_torus import NoTorus
+from symfpu.refinement.tori import NoTorus
 from symfpu.results.field import Field, fields_of, numbers_by_seed
 from symfpu.results.numbers import fifteen_digits
 from symfpu.results.result import Result

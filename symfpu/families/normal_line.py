@@ -14,8 +14,7 @@ from symfpu.normal.modes import NormalModes
 from symfpu.normal.search import Between, followed_modes
 from symfpu.refinement.conditions import Condition, amplitude_line
 from symfpu.refinement.guesses import extrapolated
-from symfpu.refinement.refined_torus import NoTorus, refined_torus
-from symfpu.refinement.tori import refine
+from symfpu.refinement.tori import NoTorus, refine, refined_torus
 from symfpu.tori.torus import Torus
 from symfpu.tori.unfolding import folded, unfold
 

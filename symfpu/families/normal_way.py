@@ -14,7 +14,7 @@ from symfpu.normal.search import followed_modes
 from symfpu.normal.torus import REFINED
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.lattice import Floats
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.tori.torus import Torus
 
 

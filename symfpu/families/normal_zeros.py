@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symfpu.normal.modes import NoNormalModes
-from symfpu.refinement.refined_torus import NoTorus
+from symfpu.refinement.tori import NoTorus
 
 EPS = float(np.finfo(float).eps)
 PLACE = 1e-12  # of the way, to which the crossing of a resonance is located

@@ -19,7 +19,8 @@ from symfpu.refinement.conditions import Condition
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats, Ints
 from symfpu.refinement.linear_system import Jacobian
-from symfpu.refinement.refined_torus import Newton, NoTorus
+from symfpu.refinement.newton import Newton
+from symfpu.refinement.tori import NoTorus
 from symfpu.tori.torus import Torus
 
 SAME = 1e-6  # of the size: tori that are nearer are one

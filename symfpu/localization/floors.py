@@ -28,7 +28,7 @@ from symfpu.numbers.public import public
 from symfpu.refinement.digits import IterativeRefinement
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.lattice import canonical_signs, dilated, places_of, told_apart
+from symfpu.refinement.lattice import alias_free_set, canonical_signs, dilated, places_of
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus, comes_from, require_fixed_solution
 
@@ -203,7 +203,7 @@ def _left_out(
 ) -> tuple[Ints, Floats, Floats]:
     """Harmonics next to those of the equation, their frequencies, and coefficients by forces."""
     known = set(map(tuple, equation.harmonics.tolist()))
-    around = np.unique(canonical_signs(told_apart(equation.harmonics)), axis=0)
+    around = np.unique(canonical_signs(alias_free_set(equation.harmonics)), axis=0)
     harmonics = around[[nu not in known for nu in map(tuple, around.tolist())]]
     forces = equation.force_at(cosines, harmonics)
     rates = harmonics @ (equation.seed_frequencies + shifts)

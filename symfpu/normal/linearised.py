@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 
 from symfpu.chain.projections.projection import Mask, Projection, linear_halves
 from symfpu.chain.projections.standing import SineProjection
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import ROWS, InvarianceEquation
 from symfpu.refinement.lattice import WORKERS, Floats, Ints, canonical_signs
-from symfpu.refinement.tori import shifts_of
 from symfpu.tori.torus import Torus
 from symfpu.tori.unfolding import folded
 

@@ -19,11 +19,11 @@ from symfpu.numbers.typed import integer
 from symfpu.refinement.digits import IterativeRefinement
 from symfpu.refinement.harmonics import chosen_harmonics
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.refinement.tori import USEFUL
+from symfpu.refinement.tori import REFINED_RESIDUAL
 from symfpu.tori.torus import Torus, comes_from, require_solution
 from symfpu.tori.unfolding import folded
 
-REFINED = USEFUL  # residual of a torus, relative, above which it is refused
+REFINED = REFINED_RESIDUAL  # residual of a torus, relative, above which it is refused
 HEIGHTS = (1e-8, 1e-11, 1e-14, 1e-17)  # parts of the largest coefficient of the torus
 SMALLEST_KEPT = (
     1e-18  # coefficients of the torus below this part of its largest are rounding

@@ -14,7 +14,7 @@ from symfpu.errors import SymfpuError
 from symfpu.files.progress import NO_FRACTION, Progress, labelled, unheard
 from symfpu.paper.printed import PrintedTorus
 from symfpu.paper.series_errors import Decay, SeriesErrors, decay, series_errors
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries

@@ -16,7 +16,7 @@ from symfpu.figures.panels import Curve, Panel
 from symfpu.paper.corrected import LEAST_DIGITS, LIMIT, CorrectedRow
 from symfpu.paper.series_errors import Decay, ScalingStudy, SeriesErrors
 from symfpu.paper.table import rounds_to
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.results.numbers import fifteen_digits
 from symfpu.results.text_tables import markdown_table
 from symfpu.tori.torus import Torus

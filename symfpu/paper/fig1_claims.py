@@ -26,7 +26,7 @@ from symfpu.paper.printed import (
     TWO_TORUS,
 )
 from symfpu.paper.table import rounds_to
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus
 

@@ -44,7 +44,7 @@ from symfpu.paper.starts import (
     printed_torus,
     profile_panel,
 )
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus

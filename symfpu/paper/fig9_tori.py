@@ -24,7 +24,7 @@ from symfpu.dynamics.starts import packet_state
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.numbers.typed import Number
 from symfpu.paper.claims import Claim, judged
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.saved.results import load
 from symfpu.spectral.analysis import frequency_analysis

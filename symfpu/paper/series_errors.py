@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import exact
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries

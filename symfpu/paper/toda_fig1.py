@@ -29,7 +29,7 @@ from symfpu.paper.convergence_fig1 import (
     resonant_pole,
 )
 from symfpu.paper.printed import FIG1_AMPLITUDE_ORDER, TWO_TORUS
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes

@@ -22,7 +22,7 @@ from symfpu.integrable.invariants import toda_gaps
 from symfpu.integrable.torus import toda_torus
 from symfpu.paper.printed import TWO_TORUS, PrintedTorus
 from symfpu.paper.starts import AMPLITUDE_ORDERS, printed_row
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes

@@ -24,7 +24,7 @@ from symfpu.plots.style import (
     subject,
     whole_numbers,
 )
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders
 from symfpu.tori.from_series import FromSeries, require_series_torus

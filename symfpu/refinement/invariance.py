@@ -22,19 +22,24 @@ from symfpu.chain.projections.by_ends import projection
 from symfpu.chain.projections.modes import ModeProjection
 from symfpu.chain.projections.projection import Projection
 from symfpu.numbers.long_doubles import DIGITS, LONG_DOUBLES, in_halves
-from symfpu.refinement.couplings import (
-    largest_slopes,
+from symfpu.refinement.lattice import (
+    Floats,
+    Ints,
+    Lattice,
+    halves_of_pairs,
+    places_of,
     shifted,
-    sparse_rows,
-    steps_by_slopes,
 )
-from symfpu.refinement.lattice import Floats, Ints, Lattice, halves_of_pairs, places_of
 
 Slopes = tuple[Floats, Floats]  # derivatives by coefficients (H, C) and by shifts (s,)
 
 PORTION = 4_000_000  # values of all bonds transformed at once
 ROWS = 16  # of a block, made at once
 APART = 1e-5  # of stretches, for a derivative by differences
+# harmonics of the slopes that sparse rows hold, their least height, relative, and the least
+# coupling of two columns by one of them
+MOST_SLOPES, SHARE, LEAST_COUPLING = 12, 0.1, 1e-3
+LEAST_STEP = 1e-3  # height of those by which further harmonics are reached, relative
 
 
 def curvature(law: bonds.Law, r: Floats) -> Floats:
@@ -56,10 +61,10 @@ class InvarianceEquation:
         chain: Chain,
         seeds: Sequence[int],
         harmonics: Ints,
-        apart: Ints | None = None,
+        separated: Ints | None = None,
     ) -> None:
         self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
-        self.grid = Lattice(harmonics, apart)
+        self.grid = Lattice(harmonics, separated)
         self.projection = projection(chain, seeds, harmonics)
         self.mask, self.linear = self.projection.mask, self.projection.omega
         self.seed_rows = places_of(np.eye(len(seeds), dtype=np.int64), harmonics)
@@ -249,7 +254,7 @@ class InvarianceEquation:
 
     def steps(self, slopes: Floats, most: int) -> Ints:
         """The largest harmonics of the slopes, so many at most, with both signs; (k, s)."""
-        return steps_by_slopes(self.grid, self._spectrum(slopes), most)
+        return self.grid.tallest(self._spectrum(slopes), most, LEAST_STEP)
 
     def slope_changes(self, cosines: Floats, weights: Floats) -> Floats:
         """Derivatives of the mean of weights times slopes, (H, C); weights (B, points).
@@ -304,15 +309,21 @@ class InvarianceEquation:
         rows, columns : of harmonic and column. A sparse matrix (m, unknowns), those in the order of
         the mask.
         """
-        spectrum = self._spectrum(slopes)
-        kappas = largest_slopes(self.grid, spectrum)
-        there, weights = self.projection, self._weights
+        from scipy import sparse
 
-        def coupled(kappa: Ints, least: float) -> tuple[Floats, Ints, Ints]:
+        spectrum, weights = self._spectrum(slopes), self._weights
+        unknowns = int(self.mask.sum())
+        number = np.full(self.mask.shape, -1, dtype=np.int32)
+        number[self.mask] = np.arange(unknowns, dtype=np.int32)
+        parts = []
+        for kappa in self.grid.tallest(spectrum, MOST_SLOPES, SHARE):
             slope = spectrum[:, self.grid.entries(kappa)]
             at, to = shifted(self.harmonics, rows, kappa)
-            coupling = there.couplings(slope, rows[at], columns[at], to, least)
-            weight = weights[to] / weights[rows[at]]
-            return weight[:, None] * coupling, at, to
-
-        return sparse_rows(self.mask, kappas, coupled, len(rows))
+            own = rows[at], columns[at]
+            coupling = self.projection.couplings(slope, *own, to, LEAST_COUPLING)
+            values = (weights[to] / weights[rows[at]])[:, None] * coupling
+            places = number[to]
+            k, c = np.nonzero((values != 0) & (places >= 0))
+            parts.append((values[k, c], at[k], places[k, c]))
+        values, i, j = (np.concatenate(x) for x in zip(*parts, strict=True))
+        return sparse.csr_matrix((values, (i, j)), shape=(len(rows), unknowns))

@@ -41,17 +41,17 @@ class Lattice:
     large, as small as what the choice leaves out. Even functions need half of the points, M/2 +
     1.
 
-    A choice that follows sizes (`symfpu.refinement.widening`) fills a small part of the least
+    A choice that follows sizes (`symfpu.refinement.harmonics`) fills a small part of the least
     polytope that holds it. It is told apart from its neighbours alone: what folds onto it is a
     product of a harmonic at its border with others than the neighbouring one.
     """
 
-    def __init__(self, harmonics: Ints, apart: Ints | None = None) -> None:
-        """apart : harmonics of both signs, among them the chosen ones; those of `told_apart`."""
+    def __init__(self, harmonics: Ints, separated: Ints | None = None) -> None:
+        """separated : harmonics of both signs, with the chosen ones; those of `alias_free_set`."""
         self.harmonics = harmonics
-        if apart is None:
-            apart = told_apart(harmonics)
-        self.period, self.generator = generated_lattice(apart)
+        if separated is None:
+            separated = alias_free_set(harmonics)
+        self.period, self.generator = generated_lattice(separated)
         self.points = self.period // 2 + 1
         self._place = self.entries(harmonics)
         self._weight = halves_of_pairs(harmonics)
@@ -89,6 +89,21 @@ class Lattice:
         found = self.spectrum(values)[:, self.entries(harmonics)]
         return np.asarray(found.T / halves_of_pairs(harmonics)[:, None])
 
+    def tallest(self, spectrum: Floats, most: int, share: float) -> Ints:
+        """The largest harmonics of functions above a share of the height of all; (k, s).
+
+        spectrum : of the functions, (m, points). With both signs. They are among all harmonics as
+        large as the chosen ones, or among low ones where those have holes: where V is even the
+        slopes have even harmonics alone, and the torus odd ones.
+        """
+        heights = np.abs(spectrum).max(axis=0)
+        holes, s = has_holes(self.harmonics), self.harmonics.shape[1]
+        nu = without_opposites(low_harmonics(s) if holes else dilated(self.harmonics, 1))
+        order = np.argsort(-heights[self.entries(nu)], kind="stable")
+        chosen = nu[order[:most]]
+        tall = chosen[heights[self.entries(chosen)] > share * heights.max()]
+        return np.unique(np.concatenate([tall, -tall]), axis=0)
+
     def spectrum(self, values: Floats) -> Floats:
         """Coefficients of exp(i nu.theta), by place; shape (m, points)."""
         from scipy import fft
@@ -104,7 +119,7 @@ def has_holes(harmonics: Ints) -> bool:
     return size > max(SMALL_HULL, HOLES * 2 * len(harmonics))
 
 
-def told_apart(harmonics: Ints) -> Ints:
+def alias_free_set(harmonics: Ints) -> Ints:
     """The harmonics, of both signs, that the lattice of chosen ones tells apart."""
     if has_holes(harmonics):
         return neighbours(harmonics)
@@ -168,6 +183,27 @@ def dilated(harmonics: Ints, factor: float) -> Ints:
         rows = np.column_stack([rows[at], numbers])
         left = left[at] - np.abs(numbers) / k
     return np.asarray(rows)
+
+
+def shifted(harmonics: Ints, rows: Ints, kappa: Ints) -> tuple[Ints, Ints]:
+    """Where nu - kappa of chosen rows nu of the harmonics, or its negative, is one of them.
+
+    Places among the chosen rows, and rows of the harmonics.
+    """
+    highest = np.abs(harmonics).max(axis=0)
+    base = 4 * highest + 3
+    weights = np.cumprod(np.append(base[1:], 1)[::-1])[::-1]
+    moved = harmonics[rows] - kappa
+    first_nonzero = np.argmax(moved != 0, axis=1)
+    lead = moved[np.arange(len(moved)), first_nonzero]
+    sign = np.where(lead < 0, -1, 1)
+    keys, wanted = harmonics @ weights, sign * (moved @ weights)
+    order = np.argsort(keys)
+    nearest = np.searchsorted(keys[order], wanted)
+    place = order[np.clip(nearest, 0, len(keys) - 1)]
+    within = (np.abs(moved) <= highest).all(axis=1)
+    found = np.flatnonzero((keys[place] == wanted) & within)
+    return found, place[found]
 
 
 def without_opposites(harmonics: Ints) -> Ints:

@@ -13,8 +13,7 @@ import psutil
 
 from symfpu.chain.chain import Chain
 from symfpu.errors import TorusTooLarge
-from symfpu.refinement.couplings import MOST_SLOPES
-from symfpu.refinement.invariance import PORTION, InvarianceEquation
+from symfpu.refinement.invariance import MOST_SLOPES, PORTION, InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints, Lattice
 from symfpu.refinement.linear_system import KRYLOV, SMALLEST_BLOCK, block_size
 from symfpu.tori.columns import CHUNK
@@ -96,7 +95,7 @@ class Sizes:
 
 
 def least_sizes(
-    chain: Chain, columns: int, bonds: int, harmonics: Ints, apart: Ints | None = None
+    chain: Chain, columns: int, bonds: int, harmonics: Ints, separated: Ints | None = None
 ) -> Sizes:
     """Before the equations are made: with the smallest block, and what symmetry leaves unknown."""
     count, s = harmonics.shape
@@ -107,7 +106,7 @@ def least_sizes(
         columns=columns,
         unknowns=unknowns,
         bonds=bonds,
-        points=Lattice(harmonics, apart).points,
+        points=Lattice(harmonics, separated).points,
         block=min(SMALLEST_BLOCK, unknowns),
         angles=_angles(chain, s),
         ring=chain.periodic,

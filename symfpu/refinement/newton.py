@@ -9,9 +9,9 @@ coefficient, else in long doubles.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -25,6 +25,10 @@ from symfpu.refinement.linear_system import (
     Jacobian,
     unsolved_words,
 )
+from symfpu.refinement.resonances import NearResonance
+from symfpu.results.field import Field
+from symfpu.results.numbers import fifteen_digits
+from symfpu.tori.torus import Origin, Torus
 
 FALL = 0.9  # of the error, at least, by a step that leaves more
 # errors by rounding up to which a force is taken in doubles: of an amplitude, relative, and of
@@ -36,7 +40,7 @@ ITERATIONS = 15
 GROWTH = 30.0  # factor by which iterates may leave the size of the guess
 
 
-class Aim(NamedTuple):
+class Tolerances(NamedTuple):
     """How far Newton's method goes.
 
     change : to come, relative, that ends it. krylov : accuracy of a Krylov solution.
@@ -46,7 +50,7 @@ class Aim(NamedTuple):
     krylov: float
 
 
-SETTLED = Aim(STEP, ACCURACY)  # to rounding
+TIGHT = Tolerances(STEP, ACCURACY)  # to rounding
 
 
 class NewtonStep(NamedTuple):
@@ -67,21 +71,68 @@ class NewtonStep(NamedTuple):
 class Iterate:
     """cosines (H, C) and shifts (s,) in long doubles, and the way there.
 
-    failure : why it ended early, empty if it converged. settled : whether it ended early because
-    no further step could be solved for, when the next one was expected to change less than what
-    ends a search that no longer gains.
+    failure : why it ended early, empty if it converged. at_rounding : whether it ended early
+    because no further step could be solved for, when the next one was expected to change less than
+    what ends a search that no longer gains.
     """
 
     cosines: Floats
     shifts: Floats
     steps: tuple[NewtonStep, ...]
     failure: str = ""
-    settled: bool = False
+    at_rounding: bool = False
 
     @property
     def residual(self) -> float:
         """Of the equations at the chosen harmonics, before the last step."""
         return self.steps[-1].residual if self.steps else np.inf
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Newton(Origin):
+    """Where a torus comes from: Newton's method on the invariance equation, in doubles (`refine`).
+
+    Not in the paper, which has series alone. All is dimensionless.
+
+    steps : of Newton's method with the final harmonics.
+    near_resonances : the smallest divisors (nu.omega)^2 - Omega_q^2, with the coefficients under
+        them.
+
+    A torus of it doubts itself where its residual is above the tolerance, or where the method
+    failed when it had reached a residual of 1e-9 or less.
+
+    >>> from symfpu import Chain, lindstedt, refine, solve_amplitudes
+    >>> refine(solve_amplitudes(lindstedt(Chain(N=8, alpha="0.3"), (1,), ("0.3905",), 6)))
+    Torus(N=8, alpha=0.3, omega_1=0.3905, A_1=0.4051586230417, H=0.0127984220834,
+    20 harmonics, residual ..., smallest divisor 0.024 at mode 2, harmonic (2), coefficient 0.031)
+    """
+
+    name: ClassVar[str] = "Newton's method"
+
+    steps: tuple[NewtonStep, ...]
+    near_resonances: tuple[NearResonance, ...]
+
+    def fields(self, torus: Torus) -> Iterator[Field]:
+        steps = []
+        for step in self.steps:
+            residual, change = fifteen_digits(step.residual), fifteen_digits(step.change)
+            steps.append({"residual": residual, "change": change, "products": step.krylov})
+        yield Field("energy_error", fifteen_digits(energy_spread(torus)))
+        yield Field("newton", steps)
+        yield Field("smallest_divisors", [near.entry() for near in self.near_resonances])
+        yield Field("verdict", "doubtful" if torus.warnings else "torus")
+
+    def facts(self) -> tuple[str, ...]:
+        return tuple(f"smallest divisor {nearest}" for nearest in self.near_resonances[:1])
+
+
+def energy_spread(torus: Torus, periods: int = 25, points: int = 100) -> float:
+    """Largest relative change of H along the orbit over some periods of the slowest seed."""
+    slowest = min(float(w) for w in torus.frequencies)
+    period = 2 * np.pi / slowest
+    times = np.linspace(0, periods * period, points)
+    energies, start = torus.energy(times), torus.energy()
+    return float(np.abs((energies - start) / start).max())
 
 
 @np.errstate(divide="ignore", invalid="ignore")
@@ -123,7 +174,7 @@ def newton(
     shifts: Floats,
     progress: Progress = unheard,
     *,
-    aim: Aim = SETTLED,
+    tolerances: Tolerances = TIGHT,
     growth: float = GROWTH,
 ) -> Iterate:
     """The torus near a guess that meets the conditions.
@@ -138,8 +189,8 @@ def newton(
     to_come, left, products = np.inf, 0.0, 0
 
     def failed(reason: str, *, unsolved: bool = False) -> Iterate:
-        settled = unsolved and to_come < ROUNDING_STEP
-        return Iterate(best[1], best[2], tuple(steps), reason, settled)
+        at_rounding = unsolved and to_come < ROUNDING_STEP
+        return Iterate(best[1], best[2], tuple(steps), reason, at_rounding)
 
     for _ in range(ITERATIONS):
         imbalance, residual = _imbalance(equation, cosines, shifts, precision)
@@ -157,7 +208,7 @@ def newton(
         right = -np.concatenate([imbalance, values])
         try:
             moved, turned, products, left = _step(
-                equation, conditions, cosines, shifts, right, aim.krylov
+                equation, conditions, cosines, shifts, right, tolerances.krylov
             )
         except (np.linalg.LinAlgError, ValueError) as failure:
             reason = f"the matrix of Newton's method is singular ({failure})"
@@ -174,8 +225,8 @@ def newton(
         if left > INEXACT:
             continue
         before = steps[-2].change if len(steps) > 1 else 1.0
-        to_come = relative * max(aim.krylov, left, relative / before)
-        if to_come < aim.change or before / 2 < relative < ROUNDING_STEP:
+        to_come = relative * max(tolerances.krylov, left, relative / before)
+        if to_come < tolerances.change or before / 2 < relative < ROUNDING_STEP:
             return Iterate(cosines, shifts, tuple(steps))
     return failed(f"no convergence in {ITERATIONS} steps")
 

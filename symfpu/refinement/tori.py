@@ -10,45 +10,149 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, overload
 
+import numpy as np
+
+from symfpu.errors import SymfpuError
 from symfpu.files.checkpoint import checkpoint_path
 from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.public import public
-from symfpu.numbers.typed import Number
+from symfpu.numbers.typed import Number, integer, part
+from symfpu.refinement.conditions import Condition
 from symfpu.refinement.digits import (
     Guess,
     IterativeRefinement,
     require_digits,
     torus_to_digits,
 )
-from symfpu.refinement.guesses import require_torus, shifts_of
+from symfpu.refinement.guesses import require_moderate, require_torus
 from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.iterative_refinement import Failure
+from symfpu.refinement.newton import GROWTH, Newton
 from symfpu.refinement.prescribed import Prescribed, prescribed_by
-from symfpu.refinement.refined_torus import (
-    DEGENERATE,
-    NEARER,
-    TOLERANCE,
-    USEFUL,
-    Newton,
-    NoTorus,
-    ended_early,
-    refined_torus,
-)
 from symfpu.refinement.refinement_file import require_digits_beside
-from symfpu.refinement.umklapp import require_independent
+from symfpu.refinement.resonances import driven_in_resonance, require_independent
+from symfpu.refinement.search import Search, Solved
+from symfpu.tori.best_order import best_order
 from symfpu.tori.energy import Energy
-from symfpu.tori.torus import Torus
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus, comes_from
 
-# the tori that are given, and what is asked of them, too
-__all__ = [
-    "TOLERANCE",
-    "USEFUL",
-    "NoTorus",
-    "ended_early",
-    "refine",
-    "refined_torus",
-    "shifts_of",
-]
+# residual of the equations of motion, relative to the largest acceleration, that ends the search
+# for harmonics
+TOLERANCE = 1e-13
+REFINED_RESIDUAL = 1e-9  # of a torus up to which normal modes and others take it
+NEARER = "start from a torus nearer to it, such as a member of a family from less energy"
+ROUNDING_RESIDUAL = (
+    1e-15  # residual of an iterate that solves the equations: it is one of many
+)
+DEGENERATE = (
+    "the frequencies may be those of many amplitudes, as of mode N/2 in alpha: "
+    "give the amplitudes, refine(torus, amplitudes=...)"
+)
+ENDED_EARLY = "Newton's method ended early"  # how the warning of such a torus begins
+
+
+class NoTorus(SymfpuError):
+    """Newton's method found no torus: raised by `refine`, its sisters and `family`.
+
+    Where it fails with a residual of 1e-9 or less left, they give that torus with a warning.
+
+    iterate : the best one, or where digits were asked for the
+        torus from which they were tried; residual : what it leaves of the
+        equations of motion, relative to the largest acceleration, dimensionless; reason : why it
+        ended. Ours.
+    """
+
+    def __init__(
+        self,
+        reason: str,
+        iterate: Torus,
+        residual: float,
+        advice: str = NEARER,
+    ) -> None:
+        self.reason, self.iterate, self.residual = reason, iterate, residual
+        left = f"the best iterate leaves {residual:.2g} of the largest acceleration"
+        super().__init__(
+            f"no torus of the seeds {iterate.seeds}: {reason}; {left}; {advice}"
+        )
+
+
+def refined_torus(
+    torus: Torus,
+    conditions: Sequence[Condition],
+    *,
+    tolerance: float = TOLERANCE,
+    most_harmonics: int = MOST_HARMONICS,
+    progress: Progress | None = None,
+    growth: float = GROWTH,
+) -> Torus[Newton]:
+    """The torus near a guess that meets as many conditions as it has angles.
+
+    With as many harmonics as the tolerance needs. growth : factor by which amplitudes may change
+    from those of the guess.
+    """
+    require_torus(torus)
+    most = integer(most_harmonics, "most_harmonics", len(torus.seeds))
+    torus, advice = _best_start(torus)
+    with np.errstate(over="ignore"):
+        require_moderate(torus.cosines.astype(float))
+    search = Search(
+        torus,
+        conditions,
+        tolerance=part(tolerance, "tolerance"),
+        most=most,
+        report=progress or unheard,
+        growth=growth,
+    )
+    solved = search()
+    found = solved.torus
+    if solved.failure:
+        return _ended_early(solved, advice)
+    if solved.warning:
+        return replace(found, warnings=(_because(solved.warning, found),))
+    return found
+
+
+def _best_start(torus: Any) -> tuple[Any, str]:
+    """The torus of a series cut where its residual is least, and what would help if that fails."""
+    if not comes_from(torus, FromSeries):
+        return torus, NEARER
+    best = best_order(torus)
+    cut = torus.origin.cut_at(best).torus(torus.phases)
+    start = cut if best else torus  # the linear modes alone lead nowhere
+    left = f"its series leaves {cut.residual():.2g} at its best order {best}"
+    return start, f"{left}: follow the family of tori from less energy"
+
+
+def _ended_early(solved: Solved, advice: str) -> Torus[Newton]:
+    """The best torus there is where Newton's method failed, with a warning; else NoTorus.
+
+    The last iterate, if nothing but rounding was left to be gained, or that of fewer harmonics.
+    """
+    last, reason = solved.torus, _because(solved.failure, solved.torus)
+    tori = [last] if solved.iterate.at_rounding else []
+    if solved.fallback is not None:
+        tori.append(solved.fallback)
+    best = min(tori, key=lambda torus: torus.residual(), default=None)
+    if best is None or not best.residual() <= REFINED_RESIDUAL:
+        residual = last.residual()
+        advice = DEGENERATE if residual <= ROUNDING_RESIDUAL else advice
+        raise NoTorus(reason, last, residual, advice)
+    left = f"the residual is {best.residual():.2g} with {len(best.harmonics)} harmonics"
+    return replace(best, warnings=(f"{ENDED_EARLY}: {reason}; {left}",))
+
+
+def ended_early(torus: Torus[Newton]) -> bool:
+    """Whether it is what Newton's method had reached when it failed."""
+    return any(warning.startswith(ENDED_EARLY) for warning in torus.warnings)
+
+
+def _because(reason: str, torus: Torus[Newton]) -> str:
+    """With the resonance of a ring that may be the cause."""
+    cause = (
+        driven_in_resonance(torus, torus.origin.near_resonances) if torus.travels else ""
+    )
+    return f"{reason}; {cause}" if cause else reason
 
 
 @overload

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from symfpu.breathers.floquet import Floquet
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment
 

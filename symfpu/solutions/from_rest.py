@@ -24,9 +24,9 @@ from symfpu.errors import (
 from symfpu.files.progress import Progress, unheard
 from symfpu.numbers.typed import exact
 from symfpu.refinement.guesses import extrapolated, frequency_shifts
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.prescribed import Prescribed
-from symfpu.refinement.refined_torus import USEFUL, Newton, NoTorus
-from symfpu.refinement.tori import refined_in_doubles
+from symfpu.refinement.tori import REFINED_RESIDUAL, NoTorus, refined_in_doubles
 from symfpu.series.lindstedt import lindstedt
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.at_energy import seed_weights, squares_of_linear_modes
@@ -220,9 +220,9 @@ def _require_good(guess: Torus) -> None:
 
 
 def _require_solved(torus: Torus[Newton]) -> Torus[Newton]:
-    """NoTorus for one that does not solve the equations of motion to USEFUL."""
+    """NoTorus for one that does not solve the equations of motion to REFINED_RESIDUAL."""
     left = torus.residual()
-    if left <= USEFUL:
+    if left <= REFINED_RESIDUAL:
         return torus
     reason = "; ".join(torus.warnings) or "the equations of motion are not solved"
     advice = "ask for less, or take refine(error.iterate, most_harmonics=...)"

@@ -19,8 +19,8 @@ from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 from symfpu.refinement.digits import IterativeRefinement
 from symfpu.refinement.guesses import moderate_by_seed
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.prescribed import prescribed_by
-from symfpu.refinement.refined_torus import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.arguments import frequencies_of
 from symfpu.solutions.from_rest import (

@@ -9,7 +9,7 @@ from symfpu.bundles.bundle import load
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import decimal
-from symfpu.refinement.refined_torus import Newton
+from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries

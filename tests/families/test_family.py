@@ -14,7 +14,7 @@ from symfpu.families import continuation
 from symfpu.families.beginnings import first_torus
 from symfpu.families.members import member
 from symfpu.refinement.conditions import Linear
-from symfpu.refinement.tori import shifts_of
+from symfpu.refinement.guesses import shifts_of
 from tests import tolerances
 from tests.families.cases import ROUND
 from tests.oracles.oscillators import cubic_oscillator

@@ -9,7 +9,7 @@ import symfpu
 from symfpu import Chain, InputError, actions, family, floquet, load, member_at_energy, save, toda, toda_torus
 from symfpu.families.beginnings import returned
 from symfpu.families.normal_events import STABILITY
-from symfpu.refinement.tori import shifts_of
+from symfpu.refinement.guesses import shifts_of
 from symfpu.tori.short_series import shifts_by_squares
 from tests import tolerances
 from tests.families.test_folder import alike

@@ -12,8 +12,9 @@ from symfpu.action_angle.newton_twist import equation_of
 from symfpu.normal.meeting import Crossed, Lost, Meeting
 from symfpu.normal.resonances import PARAMETRIC, SUM
 from symfpu.refinement.conditions import amplitude
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.tori import refined_torus, shifts_of
+from symfpu.refinement.tori import refined_torus
 from tests.normal import cases
 from tests.tolerances import CENTRAL_GRADIENT, EVENT, EVENT_BY_DIGITS
 

@@ -8,8 +8,8 @@ import symfpu
 from symfpu import Chain, NoTorus, refine
 from symfpu.borders import newton_end
 from symfpu.borders.point import Ray
-from symfpu.refinement import linear_system, refined_torus
-from symfpu.refinement.refined_torus import ENDED_EARLY, USEFUL, ended_early
+from symfpu.refinement import linear_system, tori
+from symfpu.refinement.tori import ENDED_EARLY, REFINED_RESIDUAL, ended_early
 from tests.tolerances import REFINED_COEFFICIENT
 
 CHAIN, NEAR, WANTED = Chain(8, alpha="0.3"), {1: "0.29", 3: "0.14"}, {1: "0.3", 3: "0.15"}
@@ -67,7 +67,7 @@ def test_where_all_but_rounding_was_reached_that_is_the_torus(solver, part):
     assert ended_early(found)
     assert found.warnings
     assert f"of the right-hand side of Newton's method; the residual is {found.residual():.2g} with" in warning
-    assert found.residual() < USEFUL
+    assert found.residual() < REFINED_RESIDUAL
     assert found.amplitudes == pytest.approx({1: 0.3, 3: 0.15}, abs=REFINED_COEFFICIENT)
 
 
@@ -88,16 +88,16 @@ def two_choices_of_harmonics():
     )
 
 
-@pytest.mark.parametrize("level", [USEFUL, 1e-11])
+@pytest.mark.parametrize("level", [REFINED_RESIDUAL, 1e-11])
 def test_the_torus_of_fewer_harmonics_is_given_if_it_is_of_use(solver, monkeypatch, level):
     whole = two_choices_of_harmonics()
-    monkeypatch.setattr(refined_torus, "USEFUL", level)
+    monkeypatch.setattr(tori, "REFINED_RESIDUAL", level)
     solver(*whole_then_none(monkeypatch))
-    if level == USEFUL:
+    if level == REFINED_RESIDUAL:
         found = two_choices_of_harmonics()
         assert ended_early(found)
         assert len(found.harmonics) < len(whole.harmonics)
-        assert whole.residual() < found.residual() < USEFUL
+        assert whole.residual() < found.residual() < REFINED_RESIDUAL
         return
     with pytest.raises(NoTorus) as failure:
         two_choices_of_harmonics()

@@ -8,7 +8,7 @@ import pytest
 
 from symfpu import Chain
 from symfpu.numbers.long_doubles import rational
-from symfpu.refinement import couplings, lattice
+from symfpu.refinement import invariance, lattice
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated
 from tests.tolerances import EPS, LAST_DIGIT, ROUNDING
@@ -179,8 +179,8 @@ def test_sparse_rows_of_all_harmonics_are_those_of_the_block(chain, seeds, monke
     """But for couplings below a thousandth of the largest one of their harmonic (two harmonics meet in an entry, one may be doubled),
     and for folding, which starts between unknowns of longer harmonics.
     """
-    monkeypatch.setattr(couplings, "SHARE", 0.0)
-    monkeypatch.setattr(couplings, "MOST_SLOPES", 1000)
+    monkeypatch.setattr(invariance, "SHARE", 0.0)
+    monkeypatch.setattr(invariance, "MOST_SLOPES", 1000)
     equation, c = equation_and_coefficients(chain, seeds, low=1, radius=3)
     slopes = equation.slopes(c)
     rows, columns = np.nonzero(equation.mask)

@@ -9,9 +9,9 @@ import symfpu
 from symfpu import Chain, lindstedt, refine, solve_amplitudes
 from symfpu.paper.printed import APPENDIX_F, TWO_TORUS
 from symfpu.refinement import newton
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.newton import force_precision
-from symfpu.refinement.tori import shifts_of
 from tests.refinement.test_invariance import CASES, equation_and_coefficients
 from tests.refinement.test_waves import LAWS, made
 from tests.tolerances import FORCES_IN_DOUBLES, LAST_DIGIT, LOST_IN_DOUBLES, PROMISED_RESIDUAL

@@ -13,8 +13,8 @@ from symfpu import Chain, InputError, NoTorus, frequency_shift, lindstedt, refin
 from symfpu.paper.printed import TWO_TORUS
 from symfpu.refinement import newton
 from symfpu.refinement.conditions import frequency
+from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
-from symfpu.refinement.tori import shifts_of
 from tests import tolerances
 from tests.tolerances import BREATHER_HARMONICS, EPS, LOW_ACCURACY, NEWTON_SLOPE, PROMISED_RESIDUAL, REFINED_COEFFICIENT, SLOPE
 

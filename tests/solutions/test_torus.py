@@ -125,7 +125,7 @@ def test_what_is_too_much_says_how_far_it_was_followed():
 def test_what_is_not_solved_to_rounding_is_an_error(monkeypatch):
     """As where no more harmonics fit; the iterate is kept."""
     chain, seeds, energy = CASES["beta, wrapped"]
-    monkeypatch.setattr(from_rest, "USEFUL", 0.0)
+    monkeypatch.setattr(from_rest, "REFINED_RESIDUAL", 0.0)
     with pytest.raises(NoTorus, match="most_harmonics") as failure:
         symfpu.torus(chain, seeds, energy=energy)
     assert failure.value.iterate.residual() == failure.value.residual < PROMISED_RESIDUAL

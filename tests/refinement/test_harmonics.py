@@ -9,12 +9,12 @@ import pytest
 
 import symfpu
 from symfpu import Chain, NoTorus, TorusTooLarge, refine
-from symfpu.refinement import search, widening
+from symfpu.refinement import harmonics, search
+from symfpu.refinement.harmonics import adaptive_harmonics
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import OVERSAMPLING, Lattice, dilated, neighbours
 from symfpu.refinement.newton import newton
-from symfpu.refinement.refined_torus import TOLERANCE, ended_early
-from symfpu.refinement.widening import widened
+from symfpu.refinement.tori import TOLERANCE, ended_early
 from tests.refinement.test_invariance import ball, equation_and_coefficients, largest
 from tests.refinement.test_ring_tori import of_series
 from tests.refinement.test_waves import plain_waves
@@ -90,7 +90,7 @@ def solved(chain, amplitudes, radius):
 
 def test_the_choice_keeps_the_seeds_and_its_limit():
     equation, c, shifts = solved(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.1"}, 4)
-    choice = widened(equation, c, shifts, 1e-30, 7)
+    choice = adaptive_harmonics(equation, c, shifts, 1e-30, 7)
     assert len(choice.harmonics) == 7
     assert choice.full
     assert {(1, 0), (0, 1)} <= set(map(tuple, choice.harmonics.tolist()))
@@ -98,9 +98,9 @@ def test_the_choice_keeps_the_seeds_and_its_limit():
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
 def test_what_is_left_out_adds_up_to_less_than_the_tolerance(tolerance, monkeypatch):
-    monkeypatch.setattr(widening, "LEAST_GROWTH", 0)
+    monkeypatch.setattr(harmonics, "LEAST_GROWTH", 0)
     equation, c, shifts = solved(Chain(8, alpha="0.3"), {1: "0.3", 2: "0.1"}, 8)
-    choice = widened(equation, c, shifts, tolerance, 10_000)
+    choice = adaptive_harmonics(equation, c, shifts, tolerance, 10_000)
     chosen = set(map(tuple, choice.harmonics.tolist()))
     forces = np.abs(equation.force(c)).max(axis=1)
     accelerations = equation.rates(shifts) ** 2 @ np.abs(c)
