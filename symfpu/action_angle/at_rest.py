@@ -167,13 +167,6 @@ def _couplings(chain: Chain) -> tuple[Fraction, Fraction]:
     return alpha, beta
 
 
-def _weight(N: int, q: int, n: int) -> Fraction:
-    """G_qn / (Omega_q Omega_n)."""
-    if q == n:
-        return Fraction(1, 2) if 2 * q == N else Fraction(3, 4)
-    return Fraction(1, 2 if q + n == N else 1)
-
-
 def definite_range(N: int, seeds: Sequence[int]) -> tuple[float, float]:
     """beta/alpha^2 between which 1 + tau G is positive definite: 2/3 - 2/(3 g), g its extreme
     eigenvalues in doubles; no upper end where G has no negative one.
@@ -193,7 +186,8 @@ def _inertia(N: int, seeds: Sequence[int]) -> tuple[int, int]:
 def _scaled(N: int, seeds: Sequence[int]) -> Floats:
     """G in doubles."""
     linear = 2 * np.sin(np.pi * np.array(seeds) / (2 * N))
-    weights = np.array([[float(_weight(N, q, n)) for n in seeds] for q in seeds])
+    by_beta = [[shift_coefficients(N, q, n)[1] for n in seeds] for q in seeds]
+    weights = np.array(by_beta, dtype=float) * 2 / 3
     return np.asarray(weights * np.outer(linear, linear))
 
 

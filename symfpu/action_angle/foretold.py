@@ -20,7 +20,7 @@ from symfpu.action_angle.linear_flow import (
     direction_at_rest,
     exact_direction,
 )
-from symfpu.action_angle.newton_twist import changes_by_action
+from symfpu.action_angle.newton_twist import REFINED, changes_by_action
 from symfpu.dynamics.alignment import (
     SAMPLES,
     Slope,
@@ -52,7 +52,6 @@ from symfpu.results.result import Gridded
 from symfpu.tori.torus import Torus, require_solution
 
 Floats = NDArray[np.float64]
-REFINED = 1e-8  # residual of a torus, relative, above which it is refused
 TABLE = 4_000_000  # cosines held at once
 EXACT, AT_REST = "normal modes", "modes at rest"
 LONGEST = 1e15  # time: angles are known to 0.1 there

@@ -7,8 +7,7 @@ convex in the actions, and Nekhoroshev's estimates are at their best.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import nullcontext
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -18,12 +17,22 @@ import numpy as np
 
 from symfpu.action_angle.actions import actions
 from symfpu.action_angle.at_rest import in_words
-from symfpu.action_angle.newton_twist import NoTwist, changes_by_newton
-from symfpu.action_angle.precise_twist import changes_in_digits
+from symfpu.action_angle.newton_twist import (
+    REFINED,
+    NoTwist,
+    changes_by_newton,
+    changes_in_digits,
+)
 from symfpu.chain.chain import Chain
-from symfpu.errors import InputError
-from symfpu.normal.torus import in_digits
-from symfpu.numbers.arithmetic import MULTIPRECISION, Numbers, text, with_digits
+from symfpu.normal.torus import in_digits, require_refined
+from symfpu.numbers.arithmetic import (
+    DOUBLES,
+    MULTIPRECISION,
+    Numbers,
+    mpf,
+    text,
+    with_digits,
+)
 from symfpu.numbers.public import public
 from symfpu.results.attributes import attributes
 from symfpu.results.field import (
@@ -38,7 +47,6 @@ from symfpu.results.numbers import fifteen_digits, number_text
 from symfpu.results.result import Gridded
 from symfpu.tori.torus import Torus
 
-SOLVED = 1e-8  # relative residual above which a torus is not refined
 SHOWN_DIGITS = 10
 
 
@@ -99,8 +107,8 @@ class Twist(Gridded):
         )
 
     def _context(self) -> Any:
-        numbers = MULTIPRECISION if self.digits is not None else None
-        return numbers.context(self.digits) if numbers else np.errstate()
+        numbers = DOUBLES if self.digits is None else MULTIPRECISION
+        return numbers.context(self.digits)
 
     @property
     def omega(self) -> dict[int, Any]:
@@ -214,69 +222,40 @@ def twist(solution: Torus) -> Twist:
     Twist(N=8, beta=1, seeds=1, positive definite, smallest eigenvalue 0.0214..., ...)
     """
     by_angle = actions(solution)
-    _require_refined(solution)
-    places = solution.digits if in_digits(solution) else None
-    frequencies = _rounded(list(solution.frequencies), places)
+    require_refined(solution, REFINED)
+    digits = solution.digits if in_digits(solution) else None
     return Twist(
         chain=solution.chain,
         seeds=solution.seeds,
-        frequencies=frequencies,
-        actions=_rounded(list(by_angle.values()), places),
-        matrix=with_digits(_lambda(solution), places),
+        frequencies=_rounded(solution.frequencies, digits),
+        actions=_rounded(by_angle.values(), digits),
+        matrix=_lambda(solution, digits),
         method="Newton",
-        digits=places,
+        digits=digits,
     )
 
 
-def _rounded(values: list[Any], digits: int | None) -> Numbers:
+def _rounded(values: Iterable[Any], digits: int | None) -> Numbers:
     if digits is None:
         return np.array([float(x) for x in values])
     with MULTIPRECISION.context(digits):
-        numbers = [
-            x if isinstance(x, mpmath.mpf) else MULTIPRECISION.number(x) for x in values
-        ]
-        return with_digits(np.array(numbers, dtype=object), digits)
+        return with_digits(np.array([mpf(x) for x in values]), digits)
 
 
-def _lambda(solution: Torus) -> Numbers:
+def _lambda(solution: Torus, digits: int | None) -> Numbers:
     """d omega / d I, of what both change by with the amplitudes."""
-    frequencies, by_amplitude = _by_newton(solution)
-    precise = in_digits(solution)
-    context = MULTIPRECISION.context(solution.digits) if precise else nullcontext()
-    with context:
-        try:
-            return _solved(by_amplitude.T, frequencies.T).T
-        except np.linalg.LinAlgError as failure:
-            raise NoTwist("the actions do not change with the amplitudes") from failure
-
-
-def _solved(matrix: Numbers, right: Numbers) -> Numbers:
-    """matrix^-1 right, in doubles or mpf; LinAlgError for a singular matrix."""
-    if matrix.dtype != object:
-        return np.asarray(np.linalg.solve(matrix, right))
     try:
-        inverse = mpmath.matrix(matrix.tolist()) ** -1
-    except ZeroDivisionError as failure:
-        raise np.linalg.LinAlgError(str(failure)) from failure
-    return np.asarray(np.array(inverse.tolist(), dtype=object) @ right)
-
-
-def _by_newton(solution: Torus) -> tuple[Numbers, Numbers]:
-    """In digits where the solution has those of the equations, in doubles else."""
-    if in_digits(solution):
-        return changes_in_digits(solution)
-    return changes_by_newton(solution.in_doubles())
+        if digits is None:
+            by_shift, by_action = changes_by_newton(solution.in_doubles())
+            return np.asarray(np.linalg.solve(by_action.T, by_shift.T).T)
+        by_shift, by_action = changes_in_digits(solution)
+        with MULTIPRECISION.context(digits):
+            inverse = (mpmath.matrix(by_action.tolist()) ** -1).tolist()
+            return with_digits(by_shift @ np.array(inverse, dtype=object), digits)
+    except (np.linalg.LinAlgError, ZeroDivisionError) as failure:
+        raise NoTwist("the actions do not change with the amplitudes") from failure
 
 
 def is_refined(solution: Torus) -> bool:
     """Whether Newton's matrix at the solution is that of a torus."""
-    return bool(solution.residual() <= SOLVED)
-
-
-def _require_refined(solution: Torus) -> None:
-    """InputError for what is not refined."""
-    if not is_refined(solution):
-        kind, residual = type(solution).__name__, float(solution.residual())
-        given = f"a {kind} with residual {residual:.2g}"
-        allowed = f"a torus or breather refined to a residual below {SOLVED:g}"
-        raise InputError("solution", given, allowed, "pass refine(solution)")
+    return bool(solution.residual() <= REFINED)

@@ -5,7 +5,7 @@ precision. Each step gains about 13 digits, those of a solution in doubles, howe
 residual is (Wilkinson). The unknowns are Fourier coefficients and a few frequencies, in fixed
 point: integers times 2^-bits. What they solve is said by a problem: the invariance equation of a
 torus (`symfpu.refinement.digits`), the equations linearised about one
-(`symfpu.normal.digits`), the derivatives of a torus (`symfpu.action_angle.precise_twist`).
+(`symfpu.normal.digits`), the derivatives of a torus (`symfpu.action_angle.newton_twist`).
 """
 
 from __future__ import annotations

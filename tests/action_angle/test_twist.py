@@ -116,5 +116,5 @@ def test_what_is_not_refined_is_refused():
     rough = symfpu.Torus(torus.chain, torus.seeds, torus.frequencies, torus.harmonics, torus.cosines)
     precise = symfpu.torus(Chain(8, alpha="0.3"), (1,), amplitudes={1: "0.8"}, method="series", order=4, digits=20)
     for solution in (torus, rough, precise):
-        with pytest.raises(symfpu.InputError, match=r"residual .*: allowed is .* below 1e-08.*refine\(solution\)"):
+        with pytest.raises(symfpu.InputError, match=r"residual .*: allowed is .* to 1e-08.*refine\(solution\)"):
             twist(solution)
