@@ -205,7 +205,7 @@ def _left_out(
     known = set(map(tuple, equation.harmonics.tolist()))
     around = np.unique(canonical_signs(alias_free_set(equation.harmonics)), axis=0)
     harmonics = around[[nu not in known for nu in map(tuple, around.tolist())]]
-    forces = equation.force_at(cosines, harmonics)
+    forces = equation.force(cosines, at=harmonics)
     rates = harmonics @ (equation.seed_frequencies + shifts)
     divisors = np.abs(
         (rates[:, None] - equation.linear) * (rates[:, None] + equation.linear)

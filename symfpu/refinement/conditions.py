@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from symfpu.refinement.invariance import InvarianceEquation, Slopes
+from symfpu.refinement.invariance import InvarianceEquation, Slopes, WithSlopes
 from symfpu.refinement.lattice import Floats
 
 
@@ -165,7 +165,7 @@ class Ratio:
 
     def _of_seed(
         self, place: int, equation: InvarianceEquation, cosines: Floats, shifts: Floats
-    ) -> tuple[np.longdouble, Slopes]:
+    ) -> WithSlopes:
         """Its energy or amplitude, and the derivatives."""
         if self.energies:
             return equation.seed_energy(place, cosines, shifts)

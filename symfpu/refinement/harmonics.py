@@ -179,7 +179,7 @@ def adaptive_harmonics(
     own = places_of(equation.harmonics, candidates)
     known = np.zeros((len(candidates), cosines.shape[1]))
     known[own] = cosines
-    forces = equation.force_on(grid, known)
+    forces = equation.force(known, grid=grid)
     del known
     omega = equation.seed_frequencies + shifts
     weights = _weights(equation, cosines, omega, candidates, forces)

@@ -10,7 +10,7 @@ waves on a ring one. All sums of one kind run in one precision, doubles or long 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import mpmath
@@ -32,6 +32,7 @@ from symfpu.refinement.lattice import (
 )
 
 Slopes = tuple[Floats, Floats]  # derivatives by coefficients (H, C) and by shifts (s,)
+WithSlopes = tuple[np.longdouble, Slopes]  # a number and its derivatives
 
 PORTION = 4_000_000  # values of all bonds transformed at once
 ROWS = 16  # of a block, made at once
@@ -112,36 +113,38 @@ class InvarianceEquation:
         """Omega of every coefficient at other harmonics (M, s); (M | 1, C)."""
         return self.projection.at(harmonics).omega
 
-    def _portions(self, grid: Lattice) -> list[slice]:
-        """Bonds whose values on the points of a lattice fit into a portion."""
+    def _stretches(
+        self, cosines: Floats, grid: Lattice | None = None
+    ) -> Iterator[tuple[slice, Floats]]:
+        """Bonds whose values on a lattice fit into a portion, and these; (b, points)."""
+        grid, there = self._lattice(grid)
         step = max(1, PORTION // grid.points)
-        return [slice(j, j + step) for j in range(0, self.projection.points, step)]
+        for j in range(0, there.points, step):
+            part = slice(j, j + step)
+            yield part, grid.values(there.to_points(cosines, part))
 
-    def force(self, cosines: Floats) -> Floats:
-        """N[nu] of coefficients (H, C), in their precision; 0 where the mask does not hold."""
-        return self._force(self.grid, self.projection, cosines)
+    def _lattice(self, grid: Lattice | None) -> tuple[Lattice, Projection]:
+        """A lattice with the projection of its harmonics; default its own."""
+        if grid is None:
+            return self.grid, self.projection
+        return grid, self.projection.at(grid.harmonics)
 
-    def force_on(self, grid: Lattice, cosines: Floats) -> Floats:
-        """The same of coefficients at the harmonics of another lattice, (M, C), at all of it."""
-        return self._force(grid, self.projection.at(grid.harmonics), cosines)
+    def force(
+        self, cosines: Floats, *, grid: Lattice | None = None, at: Ints | None = None
+    ) -> Floats:
+        """N[nu] of coefficients (H, C), in their precision; 0 where the mask does not hold.
 
-    def _force(self, grid: Lattice, there: Projection, cosines: Floats) -> Floats:
+        grid : another lattice, of whose harmonics the coefficients are. at : other harmonics (M, s)
+        that the lattice tells apart, of the result (M, C).
+        """
+        lattice, there = self._lattice(grid)
+        if at is not None:
+            there = self.projection.at(at)
         law = bonds.cast(self._law, cosines.dtype)
-        total = np.zeros(cosines.shape, dtype=cosines.dtype)
-        for part in self._portions(grid):
-            r = grid.values(there.to_points(cosines, part))
+        total = np.zeros(there.mask.shape, dtype=cosines.dtype)
+        for part, r in self._stretches(cosines, grid):
             tension = bonds.anharmonic_tension(law, r)
-            total += there.from_points(grid.coefficients(tension), part)
-        return np.asarray(total * there.mask)
-
-    def force_at(self, cosines: Floats, harmonics: Ints) -> Floats:
-        """The same at other harmonics (M, s) that the lattice tells apart; shape (M, C)."""
-        there = self.projection.at(harmonics)
-        total = np.zeros((len(harmonics), cosines.shape[1]), dtype=np.longdouble)
-        for part in self._portions(self.grid):
-            r = self.grid.values(self.projection.to_points(cosines, part))
-            tension = bonds.anharmonic_tension(self._law, r)
-            total += there.from_points(self.grid.coefficients_at(tension, harmonics), part)
+            total += there.from_points(lattice.coefficients(tension, at), part)
         return np.asarray(total * there.mask)
 
     def rounding(self, cosines: Floats, kind: type) -> Floats:
@@ -150,20 +153,12 @@ class InvarianceEquation:
         Every bond rounds at random at every point, and a force is a sum over bonds and points.
         """
         law, variances = self.chain.law(), np.zeros(self.projection.points)
-        for part, r in self._stretches(cosines):
+        for part, r in self._stretches(cosines.astype(float)):
             variances[part] = np.mean(bonds.anharmonic_tension(law, r) ** 2, axis=1)
         sizes = self.projection.from_variances(variances)
         return np.asarray(np.finfo(kind).eps * self.grid.averaged_rounding * sizes)
 
-    def _stretches(self, cosines: Floats) -> Any:
-        """Portions of the bonds, and their stretches on the lattice in doubles, (b, points)."""
-        c = cosines.astype(float)
-        for part in self._portions(self.grid):
-            yield part, self.grid.values(self.projection.to_points(c, part))
-
-    def energy(
-        self, cosines: Floats, shifts: Floats, *, harmonic: bool
-    ) -> tuple[np.longdouble, Slopes]:
+    def energy(self, cosines: Floats, shifts: Floats, *, harmonic: bool) -> WithSlopes:
         """H, or the harmonic energy sum E_q, and its derivatives.
 
         At the start where waves stand, as in the paper; where they travel, and are nowhere at rest,
@@ -175,12 +170,16 @@ class InvarianceEquation:
         mean = self.mean_harmonic_energy if harmonic else self.mean_energy
         return mean(cosines, shifts)
 
-    def energy_at_start(self, cosines: Floats) -> tuple[np.longdouble, Slopes]:
+    def energy_at_start(self, cosines: Floats) -> WithSlopes:
         """H at the angles zero, where standing waves have no momenta."""
-        Q = cosines.sum(axis=0)
-        return self.potential(Q), self._slopes_at_start(self.potential_slope(Q))
+        assert isinstance(self.projection, ModeProjection)
+        every_bond = self.projection.every_bond
+        r = cosines.sum(axis=0) @ every_bond
+        slope = every_bond @ bonds.tension(self._law, r)
+        energy = np.longdouble(bonds.potential(self._law, r).sum())
+        return energy, self._slopes_at_start(slope)
 
-    def harmonic_energy_at_start(self, cosines: Floats) -> tuple[np.longdouble, Slopes]:
+    def harmonic_energy_at_start(self, cosines: Floats) -> WithSlopes:
         """sum E_q at the angles zero, likewise."""
         Q, squares = cosines.sum(axis=0), self.linear[0] ** 2
         energy = np.longdouble((squares * Q**2).sum() / 2)
@@ -190,65 +189,44 @@ class InvarianceEquation:
         by_cosine = np.broadcast_to(slope, self.mask.shape) * self.mask
         return by_cosine, np.zeros(len(self.seeds))
 
-    def potential(self, Q: Floats) -> np.longdouble:
-        """The potential energy of the modes of fixed ends, (N-1,), by all bonds."""
-        each = bonds.potential(self._law, Q @ self._every_bond)
-        return np.longdouble(each.sum())
-
-    def potential_slope(self, Q: Floats) -> Floats:
-        """Its gradient; shape (N-1,)."""
-        tension = bonds.tension(self._law, Q @ self._every_bond)
-        return np.asarray(self._every_bond @ tension)
-
-    @property
-    def _every_bond(self) -> Floats:
-        assert isinstance(self.projection, ModeProjection)
-        return np.asarray(self.projection.every_bond)
-
-    def mean_energy(self, cosines: Floats, shifts: Floats) -> tuple[np.longdouble, Slopes]:
+    def mean_energy(self, cosines: Floats, shifts: Floats) -> WithSlopes:
         """H averaged over the angles."""
-        kinetic = self._mean_kinetic_energy(cosines, shifts)
-        potential: Any = np.longdouble(0)
-        for part in self._portions(self.grid):
-            r = self.grid.values(self.projection.to_points(cosines, part))
-            means = self.grid.spectrum(bonds.potential(self._law, r))[:, 0]
-            potential += self.projection.images[part] @ means
-        _, (by_cosine, by_shift) = self.mean_harmonic_energy(cosines, shifts)
-        driven = 2 * self._weights[:, None] * self.force(cosines)
-        return np.longdouble(kinetic + potential), (by_cosine + driven, by_shift)
-
-    def _mean_kinetic_energy(self, cosines: Floats, shifts: Floats) -> np.longdouble:
+        weights = self._weights[:, None]
         momenta = self.rates(shifts)[:, None] * cosines
-        return np.longdouble((self._weights[:, None] * momenta**2).sum())
+        energy: Any = (weights * momenta**2).sum()
+        for part, r in self._stretches(cosines):
+            means = self.grid.spectrum(bonds.potential(self._law, r))[:, 0]
+            energy += self.projection.images[part] @ means
+        _, (by_cosine, by_shift) = self.mean_harmonic_energy(cosines, shifts)
+        driven = 2 * weights * self.force(cosines)
+        return np.longdouble(energy), (by_cosine + driven, by_shift)
 
-    def mean_harmonic_energy(
-        self, cosines: Floats, shifts: Floats
-    ) -> tuple[np.longdouble, Slopes]:
+    def mean_harmonic_energy(self, cosines: Floats, shifts: Floats) -> WithSlopes:
         """sum E_q averaged over the angles."""
+        return self._mean_of_modes(self._weights[:, None], cosines, shifts)
+
+    def seed_energy(self, place: int, cosines: Floats, shifts: Floats) -> WithSlopes:
+        """E_q of a seed averaged over the angles, and its derivatives."""
+        weights = np.zeros(self.mask.shape)
+        share = self.projection.energy_share(self.seeds[place])
+        weights[:, self.seed_columns[place]] = self._weights * share
+        return self._mean_of_modes(weights, cosines, shifts)
+
+    def _mean_of_modes(
+        self, weights: Floats, cosines: Floats, shifts: Floats
+    ) -> WithSlopes:
+        """Harmonic energies with weights (H, C) of c^2, averaged over the angles."""
         rates = self.rates(shifts)
-        sizes = self._weights[:, None] * (rates[:, None] ** 2 + self.linear**2)
-        by_rate = 2 * self._weights * rates * (cosines**2).sum(axis=1)
+        sizes = weights * (rates[:, None] ** 2 + self.linear**2)
+        by_rate = 2 * rates * (weights * cosines**2).sum(axis=1)
         energy = np.longdouble((sizes * cosines**2).sum())
         return energy, (2 * sizes * cosines, by_rate @ self.harmonics)
-
-    def seed_energy(
-        self, place: int, cosines: Floats, shifts: Floats
-    ) -> tuple[np.longdouble, Slopes]:
-        """E_q of a seed averaged over the angles, and its derivatives."""
-        column = self.seed_columns[place]
-        c, rates = cosines[:, column], self.rates(shifts)
-        weights = self._weights * self.projection.energy_share(self.seeds[place])
-        sizes = weights * (rates**2 + self.linear[:, column] ** 2)
-        by_cosine = np.zeros(cosines.shape, dtype=cosines.dtype)
-        by_cosine[:, column] = 2 * sizes * c
-        by_shift = (2 * weights * rates * c**2) @ self.harmonics
-        return np.longdouble((sizes * c**2).sum()), (by_cosine, by_shift)
 
     def slopes(self, cosines: Floats) -> Floats:
         """V''(r) - 1 on the lattice, in doubles; shape (B, points)."""
         law = self.chain.law()
         result = np.empty((self.projection.points, self.grid.points))
-        for part, r in self._stretches(cosines):
+        for part, r in self._stretches(cosines.astype(float)):
             result[part] = bonds.anharmonic_stiffness(law, r)
         return result
 
@@ -269,8 +247,7 @@ class InvarianceEquation:
     def force_change(self, slopes: Floats, change: Floats) -> Floats:
         """The derivative of the force along a change of the coefficients, in doubles; (H, C)."""
         total = np.zeros(change.shape)
-        for part in self._portions(self.grid):
-            d = self.grid.values(self.projection.to_points(change, part))
+        for part, d in self._stretches(change):
             driven = self.grid.coefficients(slopes[part] * d)
             total += self.projection.from_points(driven, part)
         return np.asarray(total * self.mask)
@@ -298,9 +275,9 @@ class InvarianceEquation:
 
     def _spectrum(self, slopes: Floats) -> Floats:
         """Coefficients of the slopes of all points, by place; shape (B, points)."""
-        spectrum = np.empty_like(slopes)
-        for part in self._portions(self.grid):
-            spectrum[part] = self.grid.spectrum(slopes[part])
+        spectrum, step = np.empty_like(slopes), max(1, PORTION // self.grid.points)
+        for j in range(0, len(slopes), step):
+            spectrum[j : j + step] = self.grid.spectrum(slopes[j : j + step])
         return spectrum
 
     def sparse_rows(self, slopes: Floats, rows: Ints, columns: Ints) -> Any:

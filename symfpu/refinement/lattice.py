@@ -79,15 +79,15 @@ class Lattice:
         spectrum[:, self._place] = halved.T
         return np.asarray(fft.dct(spectrum, type=1, workers=WORKERS, overwrite_x=True))
 
-    def coefficients(self, values: Floats) -> Floats:
-        """Coefficients (H, m) of cosines of even functions given by values (m, points)."""
-        chosen = self.spectrum(values)[:, self._place]
-        return np.asarray(chosen.T / self._weight[:, None])
+    def coefficients(self, values: Floats, harmonics: Ints | None = None) -> Floats:
+        """Coefficients (H, m) of cosines of even functions given by values (m, points).
 
-    def coefficients_at(self, values: Floats, harmonics: Ints) -> Floats:
-        """The same at other harmonics (M, s), up to OVERSAMPLING / 2 times as large as these."""
-        found = self.spectrum(values)[:, self.entries(harmonics)]
-        return np.asarray(found.T / halves_of_pairs(harmonics)[:, None])
+        harmonics : others (M, s), up to OVERSAMPLING / 2 times as large as these.
+        """
+        place, weight = self._place, self._weight
+        if harmonics is not None:
+            place, weight = self.entries(harmonics), halves_of_pairs(harmonics)
+        return np.asarray(self.spectrum(values)[:, place].T / weight[:, None])
 
     def tallest(self, spectrum: Floats, most: int, share: float) -> Ints:
         """The largest harmonics of functions above a share of the height of all; (k, s).

@@ -73,7 +73,7 @@ def test_a_force_is_the_same_on_another_lattice(name):
     own = np.abs(wider).sum(axis=1) <= reach
     there = np.zeros((len(wider), c.shape[1]))
     there[own] = c
-    found, expected = equation.force_on(Lattice(wider), there)[own], equation.force(c)
+    found, expected = equation.force(there, grid=Lattice(wider))[own], equation.force(c)
     assert largest(found - expected) <= ROUNDING * largest(expected)
 
 

@@ -104,7 +104,7 @@ def test_what_an_even_potential_forbids_has_no_force():
     grid = Lattice(ball(2, 4))
     there = np.zeros((len(grid.harmonics), 1))
     there[places_of(equation.harmonics, grid.harmonics)] = c
-    force, odd = equation.force_on(grid, there), grid.harmonics.sum(axis=1) % 2 == 1
+    force, odd = equation.force(there, grid=grid), grid.harmonics.sum(axis=1) % 2 == 1
     assert not force[~odd].any()
     assert force[odd].any()
 
