@@ -183,24 +183,19 @@ def precise_torus(
     steps need all of them. Then harmonics are added until none that is left out has an error
     above the last digit.
     """
-    halves = digits // 2
-    if halves > guess.digits:
-        _require_room(guess, digits)
-        guess = _reached(guess, halves, report, keep)
+    stages = [digits]
+    while stages[0] // 2 > guess.digits:
+        stages.insert(0, stages[0] // 2)
+    _require_room(guess, digits)
+    for fewer in stages[:-1]:
+        with mpmath.workdps(fewer + CARRIED_DIGITS):
+            problem = TorusProblem(guess, _fitted(guess, fewer), fewer, report, keep)
+            converge(problem, fewer, report)
+            guess = problem.guess(fewer)
     with mpmath.workdps(digits + CARRIED_DIGITS):
         start = TorusProblem(guess, _fitted(guess, digits), digits, report, keep)
         problem, left = refined(start, digits, report)
         return problem.result(left)
-
-
-def _reached(guess: Guess, digits: int, report: Progress, keep: Keep) -> Guess:
-    """A guess of so many digits, with the harmonics that a fit expects; not checked."""
-    if digits // 2 > guess.digits:
-        guess = _reached(guess, digits // 2, report, keep)
-    with mpmath.workdps(digits + CARRIED_DIGITS):
-        problem = TorusProblem(guess, _fitted(guess, digits), digits, report, keep)
-        converge(problem, digits, report)
-        return problem.guess(digits)
 
 
 def _require_room(guess: Guess, digits: int) -> None:

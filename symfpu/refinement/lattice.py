@@ -193,11 +193,8 @@ def shifted(harmonics: Ints, rows: Ints, kappa: Ints) -> tuple[Ints, Ints]:
     highest = np.abs(harmonics).max(axis=0)
     base = 4 * highest + 3
     weights = np.cumprod(np.append(base[1:], 1)[::-1])[::-1]
-    moved = harmonics[rows] - kappa
-    first_nonzero = np.argmax(moved != 0, axis=1)
-    lead = moved[np.arange(len(moved)), first_nonzero]
-    sign = np.where(lead < 0, -1, 1)
-    keys, wanted = harmonics @ weights, sign * (moved @ weights)
+    moved = canonical_signs(harmonics[rows] - kappa)
+    keys, wanted = harmonics @ weights, moved @ weights
     order = np.argsort(keys)
     nearest = np.searchsorted(keys[order], wanted)
     place = order[np.clip(nearest, 0, len(keys) - 1)]
@@ -206,17 +203,21 @@ def shifted(harmonics: Ints, rows: Ints, kappa: Ints) -> tuple[Ints, Ints]:
     return found, place[found]
 
 
+def _leads(harmonics: Ints) -> Ints:
+    """The first number of each that is not 0."""
+    return np.asarray(
+        harmonics[np.arange(len(harmonics)), np.argmax(harmonics != 0, axis=1)]
+    )
+
+
 def without_opposites(harmonics: Ints) -> Ints:
     """Those whose first number that is not 0 is positive, and 0, of harmonics of both signs."""
-    first = np.argmax(harmonics != 0, axis=1)
-    lead = harmonics[np.arange(len(harmonics)), first]
-    return np.asarray(harmonics[lead >= 0])
+    return np.asarray(harmonics[_leads(harmonics) >= 0])
 
 
 def canonical_signs(harmonics: Ints) -> Ints:
     """One of each pair +-nu: the first number that is not 0 is positive, as of chosen harmonics."""
-    lead = harmonics[np.arange(len(harmonics)), np.argmax(harmonics != 0, axis=1)]
-    return np.asarray(np.where((lead < 0)[:, None], -harmonics, harmonics))
+    return np.asarray(np.where(_leads(harmonics)[:, None] < 0, -harmonics, harmonics))
 
 
 def places_of(rows: Ints, among: Ints) -> Ints:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import psutil
 
 from symfpu.chain.chain import Chain
+from symfpu.chain.projections.by_ends import count_columns, count_points
 from symfpu.errors import TorusTooLarge
 from symfpu.refinement.invariance import MOST_SLOPES, PORTION, InvarianceEquation
 from symfpu.refinement.lattice import Floats, Ints, Lattice
@@ -94,47 +95,32 @@ class Sizes:
         return KEPT_BYTES + int(KEPT_PART * (kept + max(parts)))
 
 
-def least_sizes(
-    chain: Chain, columns: int, bonds: int, harmonics: Ints, separated: Ints | None = None
-) -> Sizes:
+def least_sizes(chain: Chain, harmonics: Ints, separated: Ints | None = None) -> Sizes:
     """Before the equations are made: with the smallest block, and what symmetry leaves unknown."""
     count, s = harmonics.shape
+    columns = count_columns(chain)
     halves = (not chain.periodic) + bool(chain.potential.even)
     unknowns = columns * count // 2**halves
+    angles = points_of_each_angle(GRID_POINTS, s) ** s
     return Sizes(
         harmonics=count,
         columns=columns,
         unknowns=unknowns,
-        bonds=bonds,
+        bonds=count_points(chain),
         points=Lattice(harmonics, separated).points,
         block=min(SMALLEST_BLOCK, unknowns),
-        angles=_angles(chain, s),
+        angles=int(min(angles, angles_at_once(chain)) if chain.periodic else angles),
         ring=chain.periodic,
     )
 
 
 def sizes_of(
-    chain: Chain, equation: InvarianceEquation, cosines: Floats, shifts: Floats
+    least: Sizes, equation: InvarianceEquation, cosines: Floats, shifts: Floats
 ) -> Sizes:
     """Of the first step from an iterate."""
-    count, columns = equation.mask.shape
-    slopes, divisors = equation.slopes(cosines), equation.divisors(shifts)
-    return Sizes(
-        harmonics=count,
-        columns=columns,
-        unknowns=int(equation.mask.sum()),
-        bonds=len(slopes),
-        points=equation.points,
-        block=block_size(equation, divisors.astype(float), slopes),
-        angles=_angles(chain, len(shifts)),
-        ring=chain.periodic,
-    )
-
-
-def _angles(chain: Chain, s: int) -> int:
-    """At which the residual of a torus of s angles is taken, as many as are held at once."""
-    number = points_of_each_angle(GRID_POINTS, s) ** s
-    return int(min(number, angles_at_once(chain)) if chain.periodic else number)
+    divisors = equation.divisors(shifts).astype(float)
+    block = block_size(equation, divisors, equation.slopes(cosines))
+    return replace(least, unknowns=int(equation.mask.sum()), block=block)
 
 
 def require_memory(sizes: Sizes, chain: Chain) -> None:

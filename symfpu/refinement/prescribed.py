@@ -63,14 +63,13 @@ class Prescribed(ABC):
         return {"frequencies": self.held_frequencies, "amplitudes": self.held_amplitudes}
 
 
+@dataclass(frozen=True)
 class Frequencies(Prescribed):
     """omega of every seed of a chain."""
 
+    chain: Chain
+    seeds: tuple[int, ...]
     held_frequencies: Exact
-
-    def __init__(self, chain: Chain, seeds: tuple[int, ...], frequencies: Exact) -> None:
-        self.chain, self.seeds = chain, seeds
-        self.held_frequencies = frequencies
 
     def conditions(self, part: float = 1.0) -> list[Condition]:
         shifts = frequency_shifts(self.chain, self.seeds, self.held_frequencies)
@@ -79,13 +78,11 @@ class Frequencies(Prescribed):
         return [frequency(place, shift, linear) for place, shift in enumerate(shifts)]
 
 
+@dataclass(frozen=True)
 class Amplitudes(Prescribed):
     """A of every seed."""
 
     held_amplitudes: Exact
-
-    def __init__(self, amplitudes: Exact) -> None:
-        self.held_amplitudes = amplitudes
 
     def conditions(self, part: float = 1.0) -> list[Condition]:
         s = len(self.held_amplitudes)

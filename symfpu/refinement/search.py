@@ -183,11 +183,12 @@ class Search:
         """Of a choice; TorusTooLarge before what does not fit into memory is allocated."""
         chain, table = self.guess.chain, choice.cosines
         chosen = choice.harmonics, choice.separated
-        require_memory(least_sizes(chain, table.shape[1], self.functions, *chosen), chain)
+        least = least_sizes(chain, *chosen)
+        require_memory(least, chain)
         equation = InvarianceEquation(chain, self.guess.seeds, *chosen)
         self.report(f"{len(table)} harmonics, {equation.points} points", NO_FRACTION)
         start = np.where(equation.mask, table, 0)
-        sizes = sizes_of(chain, equation, start, shifts)
+        sizes = sizes_of(least, equation, start, shifts)
         if tolerances is not TIGHT:
             reached = (2 * MOST_STEPS + 1) * table.size
             sizes = replace(sizes, candidates=min(reached, 2 * MOST_COEFFICIENTS))
