@@ -7,11 +7,12 @@ depends on N and on the frequencies enters the series through it.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import frexp, lcm
-from typing import Any, Protocol
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -52,9 +53,10 @@ class SmallDivisor:
         return f"{self.size:.2g} at {place}, order {self.order}"
 
 
-class Divisors(Protocol):
+class Divisors(ABC):
     """The multipliers L_q(nu) of a chain and its chosen frequencies, in the ring of the series."""
 
+    @abstractmethod
     def multipliers(self, harmonics: Ints, carried: NDArray[np.bool_], order: int) -> Any:
         """L_q(nu) where the selection rules let mode q carry nu.
 
@@ -66,9 +68,10 @@ class Divisors(Protocol):
 
     def smallest(self) -> tuple[SmallDivisor, ...]:
         """The smallest divisors met so far, smallest first; none where they have no size."""
+        return ()
 
 
-class Float64Divisors:
+class Float64Divisors(Divisors):
     """Multipliers as doubles, correct to a few units in the last place.
 
     That holds down to divisors of 1e-18; below they are less exact.
@@ -105,12 +108,10 @@ class Float64Divisors:
     def multipliers(
         self, harmonics: Ints, carried: NDArray[np.bool_], order: int
     ) -> Floats:
-        """L_q(nu) where the selection rules let mode q carry nu.
+        """L_q(nu), (H, C).
 
-        Zero elsewhere and in the gauge term nu = e_q of a seed.
-
-        harmonics : (H, s). carried : (H, C). Raises ResonantDivisor where a divisor is exactly
-        zero, or so small that doubles cannot tell it from zero, and for a resonance of a ring.
+        Raises ResonantDivisor where a divisor is exactly zero, or so small that doubles cannot
+        tell it from zero, and for a resonance of a ring.
         """
         wanted = carried & ~self.space.gauge(harmonics)
         waves = self.space.wave_numbers(harmonics)
@@ -176,7 +177,7 @@ class Float64Divisors:
         return tuple(self._smallest.values())
 
 
-class FixedPointDivisors:
+class FixedPointDivisors(Divisors):
     """Multipliers as integers, 2^bits L rounded down.
 
     They come from exact frequencies and from linear ones of so many places that divisors above
@@ -263,12 +264,8 @@ class FixedPointDivisors:
         """The same multipliers by their moduli, as doubles not below them."""
         return MultiplierModuli(self)
 
-    def smallest(self) -> tuple[SmallDivisor, ...]:
-        """None here: doubles, which come first, remember them."""
-        return ()
 
-
-class MultiplierModuli:
+class MultiplierModuli(Divisors):
     """Upper bounds of |L_q(nu)| as doubles, from fixed-point multipliers."""
 
     def __init__(self, divisors: FixedPointDivisors) -> None:
@@ -285,12 +282,8 @@ class MultiplierModuli:
             self._divisors.multipliers(harmonics, carried, order)
         return self._divisors.known[order]
 
-    def smallest(self) -> tuple[SmallDivisor, ...]:
-        """None: bounds are not divisors."""
-        return ()
 
-
-class EnlargedMultipliers:
+class EnlargedMultipliers(Divisors):
     """Moduli of multipliers in doubles, a little enlarged, to be compared with proved ones."""
 
     enlarged = 1 + 2.0**-28
@@ -313,12 +306,8 @@ class EnlargedMultipliers:
         pairs = [(own, proved.known[order]) for order, own in self._by_order.items()]
         return all(bool(((b <= a) & (a <= b * self.most)).all()) for a, b in pairs)
 
-    def smallest(self) -> tuple[SmallDivisor, ...]:
-        """None: bounds are not divisors."""
-        return ()
 
-
-class ResidueDivisors:
+class ResidueDivisors(Divisors):
     """Multipliers modulo a prime, at a point where the chosen frequencies are residues.
 
     Raises VanishingResidue where a divisor is zero modulo the prime: nothing follows from such a
@@ -362,12 +351,8 @@ class ResidueDivisors:
         quotients = ring.products(ring.inverses(divisors), self._numerators)
         return np.where(wanted, quotients, 0.0)
 
-    def smallest(self) -> tuple[SmallDivisor, ...]:
-        """None: residues have no size."""
-        return ()
 
-
-class UniversalDivisors:
+class UniversalDivisors(Divisors):
     """Multipliers as symbols L_q(nu): the universal form.
 
     It holds for every chain and all generic frequencies at once.
@@ -389,10 +374,6 @@ class UniversalDivisors:
             nu = [int(n) for n in harmonics[row]]
             table[row, column] = multiplier_symbol(int(column) + 1, nu)
         return table
-
-    def smallest(self) -> tuple[SmallDivisor, ...]:
-        """None: symbols have no size."""
-        return ()
 
 
 def vanishes(

@@ -55,33 +55,25 @@ def _universal_divisors(chain: Chain, space: CosineModes, _: Frequencies) -> Div
     return UniversalDivisors(space)
 
 
-def _double_tables(digits: int | None, bits: int) -> Tables:
-    return DoubleTables()
-
-
-def _expression_tables(digits: int | None, bits: int, *, expanded: bool) -> Tables:
-    return ExpressionTables(expanded)
-
-
 FLOAT64 = RingKind(
-    "float64", _double_tables, Float64Ring, _double_divisors, numeric=True, grows=True
+    "float64", DoubleTables, Float64Ring, _double_divisors, numeric=True, grows=True
 )
 SYMBOLIC = RingKind(
     "symbolic",
-    partial(_expression_tables, expanded=True),
+    partial(ExpressionTables, expanded=True),
     partial(ProgramRing, expanded=True),
     _universal_divisors,
     program=True,
 )
 NESTED = RingKind(
     "nested",
-    partial(_expression_tables, expanded=False),
+    partial(ExpressionTables, expanded=False),
     partial(ProgramRing, expanded=False),
     _universal_divisors,
     program=True,
 )
 FIXED_POINT = RingKind("fixedpoint", FixedPointTables, numeric=True, grows=True)
-RESIDUE = RingKind("residue", _double_tables, exact_point=True, grows=True)
+RESIDUE = RingKind("residue", DoubleTables, exact_point=True, grows=True)
 
 RINGS = {kind.name: kind for kind in (FLOAT64, SYMBOLIC, NESTED, FIXED_POINT, RESIDUE)}
 # those that a series can be asked for by name

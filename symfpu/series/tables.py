@@ -5,10 +5,11 @@ The numbers they denote, in which arithmetic, and how a file keeps them.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Protocol
+from typing import Any, ClassVar
 
 import mpmath
 import numpy as np
@@ -42,71 +43,6 @@ LOG10_2 = 0.30102999566398120
 SYMBOL_DIGITS = 2  # of a number in an expression, beyond the promised ones
 
 
-class Tables(Protocol):
-    """The arithmetic of the tables of one series.
-
-    digits : promised; None for doubles and symbols. bits : binary places.
-
-    symbolic : whether coefficients are expressions in the symbols L_q(nu). dtype : of the array
-    that a file keeps.
-    """
-
-    @property
-    def digits(self) -> int | None: ...
-    @property
-    def bits(self) -> int: ...
-    @property
-    def symbolic(self) -> bool: ...
-    @property
-    def dtype(self) -> str: ...
-
-    @property
-    def numbers(self) -> Arithmetic:
-        """The arithmetic of numeric results."""
-
-    @property
-    def kind(self) -> Any:
-        """The dtype of an array of coefficients."""
-
-    def linear(self, chain: Chain, q: int) -> Any:
-        """Omega_q, as a number or as a symbol."""
-
-    def entries(self, table: Any, columns: Any = slice(None)) -> Array:
-        """Entries of a table as the numbers they denote: doubles, mpf or expressions."""
-
-    def doubles(self, table: Any) -> Floats:
-        """Entries of a table as doubles."""
-
-    def nonzero(self, table: Any) -> NDArray[np.bool_]:
-        """Which entries of a table are not zero."""
-
-    def scaled(
-        self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
-    ) -> Array:
-        """values times prod linear^powers, unit and halves; powers (count, s)."""
-
-    def simplified(self, values: Array) -> Array:
-        """Coefficients in the normal form of the ring."""
-
-    def finite(self, values: Array, what: str) -> Array:
-        """The values; raises SymfpuError where they exceed the range of doubles."""
-
-    def symbol(self, value: Any) -> Any:
-        """A coefficient as a SymEngine number."""
-
-    def pack(self, parts: Parts) -> tuple[Parts, Json]:
-        """Arrays that a file keeps, by name and order, and what else is needed to read them."""
-
-    def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
-        """Shapes of the arrays of a file, from those of the tables."""
-
-    def members(self, body: Json) -> dict[str, Member]:
-        """Further arrays of a file, by name. Raises ValueError."""
-
-    def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
-        """Tables from the arrays of a file. Raises ValueError."""
-
-
 @dataclass(frozen=True)
 class Exponents:
     """The power of a table's unit, and how many halvings, that all its coefficients share."""
@@ -117,39 +53,85 @@ class Exponents:
 
 
 @dataclass(frozen=True)
-class DoubleTables:
-    """Arrays of doubles; residues modulo a prime are kept as such, too."""
+class Tables(ABC):
+    """The arithmetic of the tables of one series; its methods are those of plain arrays.
+
+    digits : promised; None for doubles and symbols. bits : binary places.
+
+    symbolic : whether coefficients are expressions in the symbols L_q(nu). dtype : of the array
+    that a file keeps. numbers : the arithmetic of numeric results. kind : the dtype of an array of
+    coefficients.
+    """
 
     digits: int | None = None
     bits: int = 0
-    symbolic: bool = False
-    dtype: str = "<f8"
 
-    @property
-    def numbers(self) -> Arithmetic:
-        """Doubles."""
-        return DOUBLES
+    symbolic: ClassVar[bool] = False
+    dtype: ClassVar[str] = "<i8"
+    numbers: ClassVar[Arithmetic] = DOUBLES
+    kind: ClassVar[type] = object
 
-    @property
-    def kind(self) -> Any:
-        """float."""
-        return float
+    @abstractmethod
+    def linear(self, chain: Chain, q: int) -> Any:
+        """Omega_q, as a number or as a symbol."""
+
+    def entries(self, table: Any, columns: Any = slice(None)) -> Array:
+        """Entries of a table as the numbers they denote: doubles, mpf or expressions."""
+        return np.asarray(table[:, columns])
+
+    def doubles(self, table: Any) -> Floats:
+        """Entries of a table as doubles. Raises SymEngine's RuntimeError for symbols."""
+        return np.asarray(table, dtype=np.float64)
+
+    def nonzero(self, table: Any) -> NDArray[np.bool_]:
+        """Which entries of a table are not zero."""
+        return np.asarray(table != 0)
+
+    @abstractmethod
+    def scaled(
+        self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
+    ) -> Array:
+        """values times prod linear^powers, unit and halves; powers (count, s)."""
+
+    def simplified(self, values: Array) -> Array:
+        """Coefficients in the normal form of the ring."""
+        return values
+
+    def finite(self, values: Array, what: str) -> Array:
+        """The values; raises SymfpuError where they exceed the range of doubles."""
+        return values
+
+    @abstractmethod
+    def symbol(self, value: Any) -> Any:
+        """A coefficient as a SymEngine number."""
+
+    def pack(self, parts: Parts) -> tuple[Parts, Json]:
+        """Arrays that a file keeps, by name and order, and what else is needed to read them."""
+        return parts, {}
+
+    def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
+        """Shapes of the arrays of a file, from those of the tables."""
+        return shapes
+
+    def members(self, body: Json) -> dict[str, Member]:
+        """Further arrays of a file, by name. Raises ValueError."""
+        return {}
+
+    @abstractmethod
+    def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
+        """Tables from the arrays of a file. Raises ValueError."""
+
+
+@dataclass(frozen=True)
+class DoubleTables(Tables):
+    """Arrays of doubles; residues modulo a prime are kept as such, too."""
+
+    dtype: ClassVar[str] = "<f8"
+    kind: ClassVar[type] = float
 
     def linear(self, chain: Chain, q: int) -> Any:
         """Omega_q."""
         return linear_by_wave(chain.N, chain.ends)[q % chain.N]
-
-    def entries(self, table: Any, columns: Any = slice(None)) -> Array:
-        """As they are."""
-        return np.asarray(table[:, columns])
-
-    def doubles(self, table: Any) -> Floats:
-        """As they are."""
-        return np.asarray(table)
-
-    def nonzero(self, table: Any) -> NDArray[np.bool_]:
-        """Those that are not."""
-        return np.asarray(table != 0)
 
     def scaled(
         self, values: Array, linear: Sequence[Any], powers: Ints, exponents: Exponents
@@ -162,10 +144,6 @@ class DoubleTables:
         whole = np.floor(logarithm).astype(int)
         with np.errstate(over="ignore", under="ignore"):
             return np.asarray(np.ldexp(values * np.exp2(logarithm - whole), whole))
-
-    def simplified(self, values: Array) -> Array:
-        """As they are."""
-        return values
 
     def finite(self, values: Array, what: str) -> Array:
         """The values, if doubles hold them."""
@@ -180,18 +158,6 @@ class DoubleTables:
         """A double."""
         return se.RealDouble(float(value))
 
-    def pack(self, parts: Parts) -> tuple[Parts, Json]:
-        """As they are."""
-        return parts, {}
-
-    def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
-        """Those of the tables."""
-        return shapes
-
-    def members(self, body: Json) -> dict[str, Member]:
-        """None."""
-        return {}
-
     def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
         """As they are, and finite."""
         if not all(np.isfinite(array).all() for array in arrays):
@@ -200,23 +166,10 @@ class DoubleTables:
 
 
 @dataclass(frozen=True)
-class FixedPointTables:
+class FixedPointTables(Tables):
     """Tables of integers in units of 2^-bits, whose numbers are mpf of so many digits."""
 
-    digits: int | None
-    bits: int
-    symbolic: bool = False
-    dtype: str = "<i8"
-
-    @property
-    def numbers(self) -> Arithmetic:
-        """mpf."""
-        return MULTIPRECISION
-
-    @property
-    def kind(self) -> Any:
-        """object."""
-        return object
+    numbers: ClassVar[Arithmetic] = MULTIPRECISION
 
     def linear(self, chain: Chain, q: int) -> Any:
         """Omega_q at the working precision."""
@@ -247,14 +200,6 @@ class FixedPointTables:
         )
         return multiplied(values, linear, powers, scale)
 
-    def simplified(self, values: Array) -> Array:
-        """As they are."""
-        return values
-
-    def finite(self, values: Array, what: str) -> Array:
-        """mpf have no largest number."""
-        return values
-
     def symbol(self, value: Any) -> Any:
         """A number of the promised digits and some more."""
         assert self.digits is not None
@@ -276,52 +221,25 @@ class FixedPointTables:
         counts = [integer(n, "words", 1) for n in body["words"][name]]
         return [(*shape, n) for shape, n in zip(shapes, counts, strict=True)]
 
-    def members(self, body: Json) -> dict[str, Member]:
-        """None."""
-        return {}
-
     def unpack(self, arrays: Sequence[Array], body: Json, members: Members) -> list[Any]:
         """Tables of integers."""
         return list(map(IntegerTable, arrays))
 
 
 @dataclass(frozen=True)
-class ExpressionTables:
+class ExpressionTables(Tables):
     """Tables of SymEngine expressions in the symbols L_q(nu).
 
     Expanded : whether every coefficient is an expanded polynomial.
     """
 
-    expanded: bool
-    digits: int | None = None
-    bits: int = 0
-    symbolic: bool = True
-    dtype: str = "<i8"
+    symbolic: ClassVar[bool] = True
 
-    @property
-    def numbers(self) -> Arithmetic:
-        """Doubles, where numbers are asked for."""
-        return DOUBLES
-
-    @property
-    def kind(self) -> Any:
-        """object."""
-        return object
+    expanded: bool = False
 
     def linear(self, chain: Chain, q: int) -> Any:
         """The symbol Omega_q."""
         return se.Symbol(f"Omega_{q}")
-
-    def entries(self, table: Any, columns: Any = slice(None)) -> Array:
-        """Expressions, made when they are looked at."""
-        return np.asarray(table[:, columns])
-
-    def doubles(self, table: Any) -> Floats:
-        """Numbers only: what is left without symbols.
-
-        Raises SymEngine's RuntimeError for others.
-        """
-        return np.asarray(table, dtype=np.float64)
 
     def nonzero(self, table: Any) -> NDArray[np.bool_]:
         """Those that have a node."""
@@ -344,10 +262,6 @@ class ExpressionTables:
             else values
         )
 
-    def finite(self, values: Array, what: str) -> Array:
-        """Expressions have no size."""
-        return values
-
     def symbol(self, value: Any) -> Any:
         """The expression."""
         return value
@@ -358,10 +272,6 @@ class ExpressionTables:
         first, *_ = parts["coordinates"]
         arrays, layout = program_entries(first.program)
         return tables | {name: (values,) for name, values in arrays.items()}, layout
-
-    def shapes(self, name: str, shapes: Shapes, body: Json) -> Shapes:
-        """Those of the tables."""
-        return shapes
 
     def members(self, body: Json) -> dict[str, Member]:
         """Those of the program."""
