@@ -69,7 +69,7 @@ class Tables(ABC):
     symbolic: ClassVar[bool] = False
     dtype: ClassVar[str] = "<i8"
     numbers: ClassVar[Arithmetic] = DOUBLES
-    kind: ClassVar[type] = object
+    kind: ClassVar[Any] = object
 
     @abstractmethod
     def linear(self, chain: Chain, q: int) -> Any:
@@ -127,7 +127,7 @@ class DoubleTables(Tables):
     """Arrays of doubles; residues modulo a prime are kept as such, too."""
 
     dtype: ClassVar[str] = "<f8"
-    kind: ClassVar[type] = float
+    kind: ClassVar[Any] = float
 
     def linear(self, chain: Chain, q: int) -> Any:
         """Omega_q."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from symfpu.numbers.arithmetic import Numbers
 from symfpu.tori.columns import columns_of
 from symfpu.tori.from_series import FromSeries
-from symfpu.tori.torus import Torus
+from symfpu.tori.torus import Torus, points_of_each_angle
 
 Floats = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ def residuals_by_order(torus: Torus[FromSeries]) -> Floats:
     Infinite where a coefficient or a force is no number.
     """
     chain = torus.chain
-    number = angles_a_seed(len(torus.seeds), GRID_POINTS)
+    number = points_of_each_angle(GRID_POINTS, len(torus.seeds))
     theta = some_angles(torus, number).astype(float)
     omega = np.array([float(w) for w in torus.frequencies])
     squares = chain.frequencies() ** 2
@@ -60,12 +60,6 @@ def residuals_by_order(torus: Torus[FromSeries]) -> Floats:
     residuals[: len(found)] = found
     residuals[np.isnan(residuals)] = np.inf
     return residuals
-
-
-def angles_a_seed(seeds: int, points: int) -> int:
-    """How many angles of each seed make a grid of about the wanted size, from 2 to 64."""
-    number: int = round(points ** (1 / seeds))
-    return max(2, min(64, number))
 
 
 def some_angles(torus: Torus[FromSeries], number: int) -> Numbers:

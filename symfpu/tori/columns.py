@@ -94,27 +94,18 @@ class Columns(ABC):
         """
 
     @abstractmethod
-    def average_spectrum(
+    def averages(
         self,
+        T: float | None,
         coefficients: Numbers,
         frequencies: Sequence[Fraction],
         offsets: Numbers,
         numbers: Arithmetic = DOUBLES,
     ) -> Numbers:
-        """Averages of E_q of the modes of the chain over all times; (N-1,).
+        """Averages of E_q of the modes of the chain from t = 0 to T, in doubles; (N-1,).
 
-        frequencies : by seed, exact. offsets : nu.phi, (H,).
+        T : None for those over all times. frequencies : by seed, exact. offsets : nu.phi, (H,).
         """
-
-    @abstractmethod
-    def average_until(
-        self,
-        T: float,
-        coefficients: Floats,
-        frequencies: Sequence[Fraction],
-        offsets: Floats,
-    ) -> Floats:
-        """The same from t = 0 to T, in doubles."""
 
 
 class ModeColumns(Columns):
@@ -174,29 +165,32 @@ class ModeColumns(Columns):
         """Energies of the columns by mode of the chain, (N-1,)."""
         return values
 
-    def average_spectrum(
+    def averages(
         self,
+        T: float | None,
         coefficients: Numbers,
         frequencies: Sequence[Fraction],
         offsets: Numbers,
         numbers: Arithmetic = DOUBLES,
     ) -> Numbers:
-        """(1/4) sum c^2 ((nu.omega)^2 + Omega^2) over nu != 0 plus the constant term."""
         rates = self.harmonics @ np.array([numbers.number(w) for w in frequencies])
+        if T is None:
+            return self._by_mode(self._over_all_times(coefficients, rates, numbers))
+        return self._by_mode(self._until(T, coefficients, rates, offsets))
+
+    def _over_all_times(
+        self, coefficients: Numbers, rates: Numbers, numbers: Arithmetic
+    ) -> Numbers:
+        """(1/4) sum c^2 ((nu.omega)^2 + Omega^2) over nu != 0 plus the constant term."""
         weights = np.where((self.harmonics != 0).any(axis=1), 0.5, 1.0)
         squares = coefficients**2
         kinetic = (weights * rates**2) @ squares
         linear = self.linear(numbers)[0]
-        return self._by_mode(0.5 * (kinetic + linear**2 * (weights @ squares)))
+        return np.asarray(0.5 * (kinetic + linear**2 * (weights @ squares)))
 
-    def average_until(
-        self,
-        T: float,
-        coefficients: Floats,
-        frequencies: Sequence[Fraction],
-        offsets: Floats,
+    def _until(
+        self, T: float, coefficients: Floats, rates: Floats, offsets: Floats
     ) -> Floats:
-        rates = self.harmonics @ np.array([float(w) for w in frequencies])
         linear = self.linear()[0]
         velocity = rates[:, None] * coefficients
         total = np.zeros(self.count)
@@ -210,7 +204,7 @@ class ModeColumns(Columns):
             total += np.einsum("hq,hq->q", velocity[rows], (difference - sums) @ velocity)
             squares = (difference + sums) @ coefficients
             total += linear**2 * np.einsum("hq,hq->q", coefficients[rows], squares)
-        return self._by_mode(total / 4)
+        return total / 4
 
 
 class StandingColumns(ModeColumns):
@@ -363,25 +357,7 @@ class WaveColumns(Columns):
             return np.asarray(cosines - 1j * sines)
         return np.asarray(-sines - 1j * cosines)
 
-    def average_spectrum(
-        self,
-        coefficients: Numbers,
-        frequencies: Sequence[Fraction],
-        offsets: Numbers,
-        numbers: Arithmetic = DOUBLES,
-    ) -> Numbers:
-        return self._averages(None, coefficients, frequencies, offsets, numbers)
-
-    def average_until(
-        self,
-        T: float,
-        coefficients: Floats,
-        frequencies: Sequence[Fraction],
-        offsets: Floats,
-    ) -> Floats:
-        return self._averages(T, coefficients, frequencies, offsets)
-
-    def _averages(
+    def averages(
         self,
         T: float | None,
         coefficients: Numbers,
@@ -389,7 +365,7 @@ class WaveColumns(Columns):
         offsets: Numbers,
         numbers: Arithmetic = DOUBLES,
     ) -> Numbers:
-        """Averages of E_q up to T, or over all times where T is None; (N-1,).
+        """Averages of E_q.
 
         Waves of one mode whose rates coincide exactly interfere, as two opposite waves of one
         frequency do.

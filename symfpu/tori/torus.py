@@ -311,16 +311,8 @@ class Torus(Gridded, Generic[Made]):
         """The same solution with its coefficients rounded to doubles."""
         phases = {q: float(phi) for q, phi in self.phases.items()}
         cosines = self.cosines.astype(float)
-        return Torus(
-            self.chain,
-            self.seeds,
-            self.frequencies,
-            self.harmonics,
-            cosines,
-            phases,
-            travels=self.travels,
-            warnings=self.warnings,
-        )
+        given: Any = GIVEN
+        return replace(self, cosines=cosines, phases=phases, digits=None, origin=given)
 
     def state(self, t: float = 0.0) -> tuple[Floats, Floats]:
         """Mode coordinates Q and momenta P at a time, in doubles, for `integrate` to start from.
@@ -450,23 +442,20 @@ class Torus(Gridded, Generic[Made]):
         1/2 of E_q that the paper's section 3.2 leaves out. On a ring a wave has half of its energy
         in q and half in -q, and waves of one mode with equal rates interfere.
         """
-        if T is not None:
-            return self._average_until(T)
-        with self._context():
-            offsets = self.harmonics @ self._offsets()
-            average = self._columns.average_spectrum(
-                self.cosines, self.frequencies, offsets, self.numbers
-            )
-            return with_digits(np.asarray(average), self.digits)
-
-    def _average_until(self, T: float) -> Floats:
+        if T is None:
+            return with_digits(self._averages(None), self.digits)
         if not isinstance(T, Real) or not np.isfinite(float(T)) or T <= 0:
             raise InputError(
                 "T", T, "a positive finite time, or None for infinite", "pass T > 0"
             )
-        offsets = self.harmonics @ np.array([float(self.phases[q]) for q in self.seeds])
-        cosines = self.cosines.astype(float)
-        return self._columns.average_until(float(T), cosines, self.frequencies, offsets)
+        return self.in_doubles()._averages(float(T))
+
+    def _averages(self, T: float | None) -> Numbers:
+        with self._context():
+            offsets = self.harmonics @ self._offsets()
+            return self._columns.averages(
+                T, self.cosines, self.frequencies, offsets, self.numbers
+            )
 
     # the equations of motion
 
@@ -624,7 +613,7 @@ def angles_at_once(chain: Chain) -> int:
 
 
 def points_of_each_angle(wanted: int, s: int) -> int:
-    """Of a grid of s angles that has about so many points."""
+    """Of a grid of s angles that has about so many points; 2 to 64."""
     number: int = round(wanted ** (1 / s))
     return max(2, min(64, number))
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from symfpu.chain.chain import Chain
 from symfpu.numbers.public import public
 from symfpu.tori.columns import half_of
-from symfpu.tori.torus import Torus, require_fixed_solution
+from symfpu.tori.torus import GIVEN, Torus, require_fixed_solution
 
 
 @public
@@ -24,23 +26,9 @@ def unfold(solution: Torus) -> Torus:
     require_fixed_solution(solution, "solution")
     fixed = solution.chain
     ring = Chain(2 * fixed.N, potential=fixed.potential, ends="periodic")
-    return _on(ring, solution)
+    return replace(solution, chain=ring, origin=GIVEN)
 
 
 def folded(torus: Torus) -> Torus:
     """The torus with fixed ends that standing waves of a ring unfold, in doubles."""
-    return _on(half_of(torus.chain), torus.in_doubles())
-
-
-def _on(chain: Chain, torus: Torus) -> Torus:
-    """The same coefficients of another chain."""
-    return Torus(
-        chain,
-        torus.seeds,
-        torus.frequencies,
-        torus.harmonics,
-        torus.cosines,
-        torus.phases,
-        torus.digits,
-        warnings=torus.warnings,
-    )
+    return replace(torus.in_doubles(), chain=half_of(torus.chain))

@@ -31,11 +31,16 @@ from symfpu.results.table import Column, Table, joined
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders, steps_of_frequencies
-from symfpu.tori.best_order import GRID_POINTS, angles_a_seed, some_angles
+from symfpu.tori.best_order import GRID_POINTS, some_angles
 from symfpu.tori.columns import Columns, columns_of
 from symfpu.tori.from_series import FromSeries, RootCertificate, require_series_torus
 from symfpu.tori.resummation import pade_poles, resum
-from symfpu.tori.torus import DOUBLES_RESIDUAL, GRID_POINTS_DIGITS, Torus
+from symfpu.tori.torus import (
+    DOUBLES_RESIDUAL,
+    GRID_POINTS_DIGITS,
+    Torus,
+    points_of_each_angle,
+)
 
 Floats = NDArray[np.float64]
 
@@ -360,7 +365,7 @@ def _by_order(torus: Torus[FromSeries], numbers: Arithmetic) -> Iterator[_Order]
     series, chain = torus.origin.series, torus.chain
     amplitudes = [torus.amplitudes[q] for q in torus.seeds]
     points = GRID_POINTS if numbers is DOUBLES else GRID_POINTS_DIGITS
-    number = angles_a_seed(len(torus.seeds), points)
+    number = points_of_each_angle(points, len(torus.seeds))
     with numbers.context(torus.digits):
         sums = inside(numbers)
         theta = sums.array(some_angles(torus, number))
