@@ -499,6 +499,7 @@ OTHERS = {
         "from_expression",
         "init_printing",
         "lennard_jones",
+        "saved_file",
         "morse",
         "polynomial",
         "prove_for_all_N",

@@ -199,10 +199,11 @@ from symfpu.sweeps.sweep import read_sweep as read_sweep
 from symfpu.sweeps.sweep import sweep as sweep
 
 # files, and how to cite
-from symfpu.bundles.bundle import Bundle as Bundle
+from symfpu.store.saved_file import SavedFile as SavedFile
 from symfpu.reports.citation import cite as cite
-from symfpu.saved.results import load as load
-from symfpu.saved.results import save as save
+from symfpu.store.saved_file import load as load
+from symfpu.store.saved_file import save as save
+from symfpu.store.saved_file import saved_file as saved_file
 
 # code generation
 from symfpu.codegen.evaluator import Evaluator as Evaluator

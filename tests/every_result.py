@@ -14,8 +14,8 @@ import numpy as np
 
 import symfpu
 from symfpu import Chain, fpu_trajectory, lindstedt
-from tests.bundles.test_bundle import SERIES
 from tests.certified.tori import torus as two_angles
+from tests.store.test_saved_file import SERIES
 
 PAIR, SINGLE = Chain(8, alpha="0.3"), Chain(8, alpha="0.4", beta="0.1")
 COPIES = {"pickle": lambda x: pickle.loads(pickle.dumps(x)), "copy": copy.copy, "deepcopy": copy.deepcopy}
@@ -166,9 +166,9 @@ def evaluator():
 
 
 @cache
-def bundle():
+def file():
     with tempfile.TemporaryDirectory() as folder:
-        return symfpu.load(symfpu.save(Path(folder) / "torus", torus(30), verdict={"verdict": "good"}))
+        return symfpu.saved_file(symfpu.save(Path(folder) / "torus", torus(30), verdict={"verdict": "good"}))
 
 
 @cache
@@ -210,7 +210,7 @@ CASES = {
         lambda x: x.frequencies_at({1: 0.1, 2: 0.1}),
     ),
     "BorderLaw": Case(lambda: borders().law("high:1", "poles"), lambda x: x.local),
-    "Bundle": Case(bundle, lambda x: motion(x.torus)),
+    "SavedFile": Case(file, lambda x: motion(x.result)),
     "Chain": Case(lambda: Chain(8, alpha="1/3", beta="0.1"), lambda x: (x.frequencies(), x.small_parameter())),
     "Evaluator": Case(evaluator, lambda x: (x.Q(TIMES, {2: 0.5}), x.energy())),
     "Event": Case(lambda: symfpu.Event("fold", "omega_1", 3, 0.1, 0.2), lambda x: x.kind),
@@ -304,7 +304,7 @@ WITHOUT = {
     "AtlasBorder": ("file record table", "a row of Atlas"),
     "BirkhoffForm": ("file", "exact numbers of a field, made anew"),
     "BorderLaw": ("table", "numbers of one line"),
-    "Bundle": ("file table", "it is what a file held, and has its results"),
+    "SavedFile": ("file table", "it is what a file held, and has its results"),
     "Chain": ("file record table", "an argument"),
     "Evaluator": ("file record table", "a program"),
     "Energy": ("file record table", "an argument"),

@@ -22,8 +22,8 @@ from symfpu.paper.corrected import TimeIsUp
 from symfpu.paper.side_by_side import TargetsFailed
 from symfpu.proofs.reading import CertificateError
 from symfpu.sweeps.rows import SweepFailure
-from tests.bundles.test_bundle import same
 from tests.every_result import COPIES, PAIR, SINGLE, mapped, orbit, refined, stability, swept, swept_rules
+from tests.store.test_saved_file import same
 
 
 def caught(kind, function, *arguments, **options):

@@ -25,7 +25,6 @@ BORROWED = {
     "algebra": "proofs series",
     "borders": "numbers refinement sweeps",
     "breathers": "chain dynamics numbers",
-    "bundles": "algebra files proofs series",
     "certified": "breathers normal numbers proofs reports",
     "chain": "numbers",
     "cli": "normal proofs",
@@ -41,8 +40,9 @@ BORROWED = {
     "reports": "results",
     "series": "algebra chain notebook numbers proofs tori",
     "spectral": "files",
+    "store": "algebra files proofs series",
     "sweeps": "algebra files",
-    "tori": "bundles chain numbers series",
+    "tori": "chain numbers series",
 }
 
 

@@ -13,13 +13,13 @@ import pytest
 from matplotlib.figure import Figure
 
 import symfpu
-from symfpu import InputError, load, save
+from symfpu import InputError, load, save, saved_file
 from symfpu.cli.main import main
 from symfpu.results.pictures import picture_of
 from symfpu.results.result import Result
-from tests.bundles.test_bundle import same
 from tests.elements import read
 from tests.every_result import CASES, COPIES, WITHOUT, kind_of, public_classes, result
+from tests.store.test_saved_file import same
 
 ROOT = Path(__file__).parents[1]
 METHODS = {"record": "record", "table": "to_frame"}
@@ -107,11 +107,11 @@ def test_a_result_comes_back_from_its_file(name, tmp_path, capsys):
     kept, answers = result(name), CASES[name].answers
     with mpmath.workdps(5):  # the precision of the moment is not the file's
         file = save(tmp_path / "result.symfpu", kept, verdict={"verdict": "good"}, command="a command")
-        found = load(file)
-    assert type(found.result) is type(kept)
-    assert same(found.result, kept)
-    assert repr(found.result) == repr(kept)
-    assert same(answers(found.result), answers(kept))
+        found, again = saved_file(file), load(file)
+    assert type(again) is type(found.result) is type(kept)
+    assert same(again, kept)
+    assert repr(again) == repr(kept)
+    assert same(answers(again), answers(kept))
     assert (found.verdict, found.provenance["command"]) == ({"verdict": "good"}, "a command")
     assert main(["show", str(file)]) == 0
     assert "created" in capsys.readouterr().out
@@ -164,7 +164,7 @@ def test_a_record_is_json_with_keys_of_the_page_and_the_same_forms(name):
     kept = result(name)
     found = kept.record()
     assert json.loads(json.dumps(found, allow_nan=False)) == found
-    about = kept.torus if name == "Bundle" else kept
+    about = kept.result if name == "SavedFile" else kept
     assert (found["kind"], found["symfpu_version"]) == (type(about).__name__, symfpu.__version__)
     assert found.keys() - set(re.findall(r"`(\w+)`", RECORDS)) == set()
     if hasattr(about, "chain"):
@@ -239,8 +239,9 @@ def returns_from_netcdf(found, path):
 
 LARGEST_IMAGE = 60_000  # bytes
 WITHOUT_PICTURE = {"LindstedtSeries, residue", "LindstedtSeries, symbolic", "LindstedtSeries, nested", "SeriesForAllN"}
-SHOWN = [name for name in CASES if isinstance(result(name), Result)]
-WITH_PICTURE = [name for name in SHOWN if picture_of(type(result(name)))]
+CLASSES = {name: getattr(symfpu, kind_of(name), None) for name in CASES}
+SHOWN = [name for name, kind in CLASSES.items() if isinstance(kind, type) and issubclass(kind, Result)]
+WITH_PICTURE = [name for name in SHOWN if picture_of(CLASSES[name])]
 DRAWN = [name for name in WITH_PICTURE if name not in WITHOUT_PICTURE]
 
 

@@ -71,6 +71,8 @@ class TwistAtRest(Tabled):
     beta/alpha^2 in (-15.9649..., 165.7073...))
     """
 
+    not_kept = "make it again, or keep its table: to_frame()"
+
     chain: Chain
     seeds: tuple[int, ...]
     signature: tuple[int, int, int]

@@ -81,6 +81,8 @@ class BirkhoffForm(Tabled):
     [mpf('0.390180644032'), mpf('0.0107044...')]
     """
 
+    not_kept = "make it again, or keep its table: to_frame()"
+
     chain: Chain
     seeds: tuple[int, ...]
     degree: int

@@ -51,6 +51,13 @@ class HarmonicBalance(Origin):
     iterations: int
     sigma: float
 
+    def require_whole(self, torus: Torus) -> None:
+        numbered = np.arange(len(torus.harmonics))[:, None]
+        if not np.array_equal(torus.harmonics, numbered):
+            raise ValueError("the harmonics are not those of a periodic orbit")
+        if self.iterations < 0 or not np.isfinite(self.sigma):
+            raise ValueError(f"sigma = {self.sigma} after {self.iterations} iterations")
+
 
 def orbit_of(
     chain: Chain,

@@ -44,7 +44,7 @@ from symfpu.numbers.typed import Number, decimal, energy_of, exact
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, chain_fields, seeds_field
 from symfpu.results.numbers import fifteen_digits
-from symfpu.results.result import Tabled
+from symfpu.results.result import BY_CERTIFICATE, Tabled
 from symfpu.results.table import Table
 from symfpu.series.arguments import digits_of
 from symfpu.tori.torus import Torus
@@ -109,6 +109,8 @@ class ExistenceProof(Tabled):
     ExistenceProof(N=8, alpha=0.3, seed 1, omega=0.3905: a periodic orbit within ... of the
     computed one, the only one within ...; A = 0.4051586230... +- ..., H = 0.01279842208... +- ...)
     """
+
+    not_kept = BY_CERTIFICATE
 
     chain: Chain
     seed: int

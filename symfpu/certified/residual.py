@@ -29,7 +29,7 @@ from symfpu.numbers.one_sided import above
 from symfpu.numbers.public import public
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, chain_fields, exact_by_seed, seeds_field
-from symfpu.results.result import Tabled
+from symfpu.results.result import BY_CERTIFICATE, Tabled
 from symfpu.results.table import Table
 from symfpu.tori.torus import Torus
 
@@ -112,6 +112,8 @@ class ResidualProof(Tabled):
     ResidualProof(N=4, alpha=0.3, omega_1=0.76..., omega_2=1.41..., 30 digits: residual below
     ... of every particle at all angles, H within ..., ... of the largest acceleration)
     """
+
+    not_kept = BY_CERTIFICATE
 
     chain: Chain
     seeds: tuple[int, ...]

@@ -43,7 +43,7 @@ from symfpu.numbers.typed import Number, decimal
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, chain_fields, seeds_field
 from symfpu.results.numbers import fifteen_digits
-from symfpu.results.result import Tabled
+from symfpu.results.result import BY_CERTIFICATE, Tabled
 from symfpu.results.table import Table
 from symfpu.tori.torus import Torus
 
@@ -126,6 +126,8 @@ class StabilityProof(Tabled):
     StabilityProof(N=8, alpha=0.3, seed 1, omega=0.3905: linearly stable, 6 exponents within ...,
     smallest gap 0.0110... omega)
     """
+
+    not_kept = BY_CERTIFICATE
 
     existence: ExistenceProof
     stable: bool

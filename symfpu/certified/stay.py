@@ -40,7 +40,7 @@ from symfpu.numbers.typed import Number, decimal, exact
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field
 from symfpu.results.numbers import fifteen_digits
-from symfpu.results.result import Tabled
+from symfpu.results.result import BY_CERTIFICATE, Tabled
 from symfpu.results.table import Table
 from symfpu.tori.torus import Torus
 
@@ -107,6 +107,8 @@ class StayProof(Tabled):
     on the torus stays within ... of it for t <= 1000000000, its angles within ... of phi +
     omega t; at most t <= ...)
     """
+
+    not_kept = BY_CERTIFICATE
 
     chain: Chain
     seeds: tuple[int, ...]

@@ -16,7 +16,7 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
 from symfpu.reports.action_angle import actions_record, actions_text
-from symfpu.saved.results import load
+from symfpu.store.saved_file import load
 
 
 @app.command(epilog="Example: symfpu actions torus.symfpu --json")

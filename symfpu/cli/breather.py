@@ -33,8 +33,8 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.files.progress import NO_FRACTION
 from symfpu.reports.solution import solution_record, solution_text
-from symfpu.saved.results import save
 from symfpu.solutions.torus import torus
+from symfpu.store.saved_file import save
 from symfpu.tori.torus import Torus
 
 

@@ -30,7 +30,7 @@ from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.reports.certified import residual_proof_text, stay_text
 from symfpu.reports.existence import existence_text
 from symfpu.reports.stability_proof import stability_text
-from symfpu.saved.results import load
+from symfpu.store.saved_file import load
 from symfpu.tori.torus import Torus
 
 AmplitudeOption = Annotated[

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from symfpu.bundles.bundle import Bundle
 from symfpu.chain.chain import Chain
 from symfpu.cli.choices import choice
 from symfpu.cli.terminal import whole
@@ -53,12 +52,12 @@ def chain_of(
     return Chain(N, alpha, beta, potential=potential, ends=ends)
 
 
-def solution_of(bundle: Bundle, file: str) -> Torus:
-    """The solution of a file; InputError, with what it holds, where there is none."""
-    if bundle.torus is None:
-        kind = type(bundle.result).__name__
+def solution_of(result: Any, file: str) -> Torus:
+    """The solution that a file holds; InputError, with what it holds, for another result."""
+    if not isinstance(result, Torus):
+        kind = type(result).__name__
         allowed = "a file with a torus or a breather in it"
         opened = f"it holds {kind}, which symfpu show opens"
         advice = f"{opened}; write one with symfpu solve or breather -o"
         raise InputError("FILE", file, allowed, advice)
-    return bundle.torus
+    return result

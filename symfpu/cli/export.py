@@ -13,7 +13,10 @@ from symfpu.cli.terminal import FileArgument, optional, path_named, progress_bar
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file
-from symfpu.saved.results import load
+from symfpu.series.series import LindstedtSeries
+from symfpu.store.saved_file import load
+from symfpu.tori.from_series import FromSeries
+from symfpu.tori.torus import Torus, comes_from
 
 # known to the help without importing them
 LANGUAGES = ("c", "fortran", "numpy", "mpmath", "octave")
@@ -68,8 +71,10 @@ def export(
     from symfpu.codegen.export import export as export_source
 
     target = output_file(path_named("output", output))
-    bundle = load(path_named("FILE", file))
-    solution = bundle.series if series else bundle.torus
+    held = load(path_named("FILE", file))
+    if series and comes_from(held, FromSeries):
+        held = held.origin.series
+    solution = held if isinstance(held, LindstedtSeries if series else Torus) else None
     if solution is None:
         wanted = "series" if series else "torus"
         advice = "write one with symfpu solve or breather -o, or export the --series"

@@ -51,7 +51,7 @@ from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.reports.family import family_table, family_text
 from symfpu.reports.solution import refined_text, solution_record, solution_text
-from symfpu.saved.results import load, save
+from symfpu.store.saved_file import load, save
 from symfpu.tori.energy import Energy
 from symfpu.tori.torus import Torus, comes_from
 

@@ -9,7 +9,6 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from symfpu.bundles.bundle import save
 from symfpu.cli.chains import chain_of
 from symfpu.cli.keeping import SaveOption, file_named, keep, output_named, say_kept
 from symfpu.cli.pictures import PlotOption, draw, picture_named, say_drawn
@@ -46,6 +45,7 @@ from symfpu.results.text_tables import text_table
 from symfpu.spectral.analysis import FrequencyAnalysis, SpectralLine, frequency_analysis
 from symfpu.spectral.mapping import FrequencyMap, frequency_map
 from symfpu.spectral.near import torus_near
+from symfpu.store.saved_file import save
 
 RANGE_PARTS = 3  # A:B:n
 SHOWN_LINES = 20

@@ -10,7 +10,7 @@ import typer
 
 from symfpu.cli.terminal import path_named
 from symfpu.files.writing import output_file
-from symfpu.saved.results import save
+from symfpu.store.saved_file import save
 
 SaveOption = Annotated[
     str | None,

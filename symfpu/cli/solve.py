@@ -41,9 +41,9 @@ from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.refinement.newton import Newton
 from symfpu.reports.series import assessment_text
 from symfpu.reports.solution import refined_text, solution_record, solution_text
-from symfpu.saved.results import save
 from symfpu.solutions.series import series_torus
 from symfpu.solutions.torus import torus
+from symfpu.store.saved_file import save
 from symfpu.tori.energy import Energy
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.orders import Orders

@@ -39,7 +39,7 @@ from symfpu.reports.normal import (
     series_records,
     series_text,
 )
-from symfpu.saved.results import load
+from symfpu.store.saved_file import load
 from symfpu.tori.torus import Torus
 
 MEMBERS = 9

@@ -15,7 +15,7 @@ from symfpu.dynamics.starts import packet_state, random_state
 from symfpu.dynamics.state_files import read_state
 from symfpu.errors import InputError
 from symfpu.numbers.arithmetic import Numbers
-from symfpu.saved.results import load
+from symfpu.store.saved_file import load
 from symfpu.tori.torus import Torus
 
 StartArgument = Annotated[str | None, typer.Argument(help=SAVED_SOLUTION, metavar="[FILE]")]

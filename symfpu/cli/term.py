@@ -29,12 +29,12 @@ from symfpu.errors import InputError
 from symfpu.notebook import latex_lines
 from symfpu.numbers.typed import decimal
 from symfpu.results.field import exact_by_seed
-from symfpu.saved.results import save
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.closed_forms import closed_form
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.named_parts import NamedParts
 from symfpu.series.series import LindstedtSeries
+from symfpu.store.saved_file import save
 
 CLOSED = "closed"
 FORMS = ("expanded", "factored", "cse", CLOSED)

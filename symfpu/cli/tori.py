@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from symfpu.bundles.bundle import Bundle
 from symfpu.cli.terminal import FileArgument, JsonOption, path_named, print_json, say, warn
 from symfpu.cli.verbs import app
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.newton import Newton
 from symfpu.reports.solution import refined_text, solution_text
-from symfpu.saved.results import load
+from symfpu.store.saved_file import saved_file
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus, comes_from
 
@@ -47,31 +46,28 @@ def show(
     as_json: JsonOption = False,
 ) -> None:
     """What a result file holds: any result, its verdict, and what made it."""
-    bundle = load(path_named("FILE", file))
-    solution = bundle.torus
+    held = saved_file(path_named("FILE", file))
     if as_json:
-        print_json(bundle.record())
+        print_json(held.record())
         return
-    record = {} if solution is None else solution.record()
-    verdict = bundle.verdict or {}
-    if verdict and not comes_from(solution, Newton):
+    verdict = held.verdict or {}
+    if verdict and not comes_from(held.result, Newton):
         say(f"verdict: {verdict.get('verdict')}")
-    _print_held(bundle, record)
+    _print_result(held.result)
     for reason in verdict.get("reasons", []):
         say(f"  {reason}")
-    for key, value in bundle.provenance.items():
+    for key, value in held.provenance.items():
         say(f"{key:<18} {value}")
 
 
-def _print_held(bundle: Bundle, record: dict[str, Any]) -> None:
+def _print_result(result: Any) -> None:
     """The result of a file, for a reader."""
-    solution = bundle.torus
-    if solution is None:
-        say(bundle.result)
-    elif comes_from(solution, Newton):
-        say(refined_text(solution))
+    if comes_from(result, Newton):
+        say(refined_text(result))
+    elif isinstance(result, Torus):
+        print_solution(result, result.record())
     else:
-        print_solution(solution, record)
+        say(result)
 
 
 def print_solution(solution: Torus, record: dict[str, Any]) -> None:

@@ -13,7 +13,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from symfpu.bundles.bundle import load, save
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError
 from symfpu.families.beginnings import first_energy
@@ -44,6 +43,7 @@ from symfpu.files.writing import made_folder
 from symfpu.normal.frequencies import NormalFrequencies
 from symfpu.numbers.typed import Number, double, exact, integer
 from symfpu.refinement.newton import Newton
+from symfpu.store.saved_file import load, save
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.torus import Torus, comes_from
 
@@ -334,7 +334,7 @@ class Kept:
         InputError where its file is not there, BundleError where it is damaged.
         """
         try:
-            torus = load(self._file(index)).torus
+            torus = load(self._file(index))
         except FileNotFoundError as error:
             allowed, advice = (
                 f"all {index + 1} members or more",
@@ -343,7 +343,7 @@ class Kept:
             raise InputError("folder", str(self.folder), allowed, advice) from error
         ours = self.plan.chain, self.plan.seeds
         if (
-            torus is None
+            not isinstance(torus, Torus)
             or not isinstance(torus.origin, Newton | FromSeries)
             or (torus.chain, torus.seeds) != ours
         ):

@@ -7,7 +7,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from symfpu.bundles.tree import read_tree, write_tree
 from symfpu.errors import InputError
 from symfpu.families.normal_events import NormalEvent
 from symfpu.files.archive import BundleError
@@ -15,14 +14,13 @@ from symfpu.files.locking import one_run
 from symfpu.files.sealed import document_in, read_bytes, write_sealed
 from symfpu.files.writing import made_folder
 from symfpu.normal.frequencies import NormalFrequencies, frequencies_again
-from symfpu.normal.modes import NormalDivisor, NormalMode, NormalModes
+from symfpu.normal.modes import NormalModes
 from symfpu.normal.resonances import ParametricResonance
+from symfpu.store.saved_file import load, save
 from symfpu.tori.torus import Torus
 
 Json = dict[str, Any]
 RECORD = "line.json"
-KINDS = (NormalModes, NormalMode, NormalDivisor, ParametricResonance)
-CLASSES: dict[str, type[Any]] = {kind.__name__: kind for kind in KINDS}
 
 
 def normal_file(folder: Path, index: int) -> Path:
@@ -32,14 +30,14 @@ def normal_file(folder: Path, index: int) -> Path:
 
 def write_modes(folder: Path, index: int, found: NormalModes) -> None:
     """The normal modes of a member, with their torus and eigenfunctions."""
-    write_tree(normal_file(folder, index), found, CLASSES)
+    save(normal_file(folder, index), found)
 
 
 def read_modes(folder: Path, index: int) -> NormalModes:
     """The same again; InputError where they are not there, BundleError where damaged."""
     file = normal_file(folder, index)
     try:
-        found = read_tree(file, CLASSES)
+        found = load(file)
     except FileNotFoundError as error:
         allowed = "the normal modes that its record counts"
         advice = f"restore {file.name}, or choose another folder"

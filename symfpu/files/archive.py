@@ -27,7 +27,7 @@ from symfpu.numbers.typed import integer
 Array = NDArray[Any]
 Json = dict[str, Any]
 
-SCHEMA = 8  # of all that is written, and the one that is read
+SCHEMA = 9  # of all that is written, and the one that is read
 DOCUMENT = "bundle.json"
 COMPRESSION = 1  # mantissas are noise; the zeros between them are gone at the first level
 CHUNK = 1 << 22

@@ -68,6 +68,8 @@ class NormalFrequencySeries(Tabled):
     1      1         2
     """
 
+    not_kept = "make it again, or keep its table: to_frame()"
+
     chain: Chain
     seeds: tuple[int, ...]
     mode: int

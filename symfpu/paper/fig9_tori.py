@@ -26,9 +26,9 @@ from symfpu.numbers.typed import Number
 from symfpu.paper.claims import Claim, judged
 from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
-from symfpu.saved.results import load
 from symfpu.spectral.analysis import frequency_analysis
 from symfpu.spectral.near import torus_near
+from symfpu.store.saved_file import load
 from symfpu.tori.torus import Torus, comes_from
 
 Floats = NDArray[np.float64]
@@ -89,7 +89,7 @@ def distance_from(torus: Torus, start: Floats) -> float:
 def five_angles() -> Torus[Newton]:
     """The torus of five angles whose seeds start where the trajectory of H = 0.014915 does."""
     with as_file(files("symfpu.paper") / "data" / "fig9-torus.symfpu") as path:
-        found = load(path).result
+        found = load(path)
     assert comes_from(found, Newton)
     return found
 

@@ -93,6 +93,10 @@ class IterativeRefinement(Origin):
     error: Any
     sweeps: int
 
+    def require_whole(self, torus: Torus) -> None:
+        if torus.digits is None:
+            raise ValueError("no digits of a torus that was refined to many")
+
     def fields(self, torus: Torus) -> Iterator[Field]:
         yield Field("residual_bound", number_text(self.bound, 3))
         yield Field("coefficient_error", number_text(self.error, 3))

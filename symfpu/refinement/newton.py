@@ -112,6 +112,16 @@ class Newton(Origin):
     steps: tuple[NewtonStep, ...]
     near_resonances: tuple[NearResonance, ...]
 
+    def require_whole(self, torus: Torus) -> None:
+        """In doubles, waves that travel, each seed with its own harmonic."""
+        if torus.stands or torus.digits is not None:
+            raise ValueError("standing waves, or many digits, by Newton's method")
+        for unit in np.eye(len(torus.seeds), dtype=np.int64):
+            if np.count_nonzero((torus.harmonics == unit).all(axis=1)) != 1:
+                raise ValueError("a seed whose own harmonic is not there, or is there twice")
+        if any(step.krylov < 0 for step in self.steps):
+            raise ValueError("a negative number of products")
+
     def fields(self, torus: Torus) -> Iterator[Field]:
         steps = []
         for step in self.steps:

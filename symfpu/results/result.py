@@ -9,7 +9,9 @@ import base64
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
 
 from symfpu.errors import InputError
 from symfpu.numbers.public import public
@@ -30,10 +32,18 @@ PAGE = """<div class="symfpu-answer" style="display: flex; flex-wrap: wrap; gap:
 {picture}</div>"""
 ROW = '<tr><td style="text-align: left">{}</td><td style="text-align: left">{}</td></tr>'
 
+# of results whose certificate is their file
+BY_CERTIFICATE = "its certificate is kept by .write(path), and symfpu verify opens it"
+
 
 @public
 class Result(ABC):
-    """A result: what it says of itself is declared by its class alone."""
+    """A result: what it says of itself is declared by its class alone.
+
+    not_kept : why `save` takes none of its class, as advice; empty for those that it takes.
+    """
+
+    not_kept: ClassVar[str] = ""
 
     @abstractmethod
     def _fields(self) -> Iterator[Field]:
@@ -42,6 +52,10 @@ class Result(ABC):
     def _answer(self) -> str:
         """The verdict in a line."""
         return str(getattr(self, "verdict", ""))
+
+    def _require_whole(self) -> None:
+        """ValueError where its parts do not fit together: of what a file held."""
+        repr(self)
 
     def record(self) -> dict[str, Any]:
         """Its answer as a dictionary that JSON can hold, with the keys of the command line.
@@ -105,6 +119,12 @@ class Tabled(Result):
         yield from known
         yield from table_fields(self._table(), {field.key for field in known})
 
+    def _require_whole(self) -> None:
+        repr(self)
+        columns = {len(values) for values in self._table().columns.values()}
+        if len(columns) > 1:
+            raise ValueError(f"columns of the lengths {sorted(columns)} in one table")
+
     def to_frame(self) -> pd.DataFrame:
         """Its numbers as a DataFrame of pandas; the columns are in docs/tables.md.
 
@@ -142,6 +162,16 @@ class Gridded(Tabled):
 
     def _table(self) -> Table:
         return self._grid().table()
+
+    def _require_whole(self) -> None:
+        repr(self)
+        grid = self._grid()
+        lengths = {name: len(np.asarray(labels)) for name, labels in grid.axes.items()}
+        for name, variable in grid.variables.items():
+            due = tuple(lengths[axis] for axis in variable.axes)
+            shape = np.shape(variable.values)
+            if shape != due:
+                raise ValueError(f"{name} is of the shape {shape}, not {due}")
 
     def to_xarray(self) -> xarray.Dataset:
         """Its numbers as a Dataset of xarray; the variables are in docs/tables.md.

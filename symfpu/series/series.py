@@ -118,6 +118,10 @@ class LindstedtSeries(SeriesSums, Tabled):
     smallest divisor 0.35 at mode 2, harmonic (2), order 1)
     """
 
+    def _require_whole(self) -> None:
+        """What reads its tables cuts them to the shapes that they must have."""
+        repr(self)
+
     def _answer(self) -> str:
         return f"order {self.order}, {counted(self.coefficient_count, 'coefficient')}"
 

@@ -135,6 +135,19 @@ class FromSeries(Origin):
         orders = range(self.order + 1)
         return tuple(self.series.harmonic_sums(list(self.amplitudes), k) for k in orders)
 
+    def require_whole(self, torus: Torus) -> None:
+        """Its orders and its seeds are those of the series."""
+        series, order = self.series, max(order_of(self.order), self.frequency_order)
+        if order > series.order or self.frequency_order < 0:
+            orders = f"order {self.order} and frequency order {self.frequency_order}"
+            raise ValueError(f"no torus of {orders} can come from this series")
+        ours = series.chain, series.seeds, series.frequencies, series.digits
+        if ours != (torus.chain, torus.seeds, torus.frequencies, torus.digits):
+            raise ValueError("the series is one of another torus")
+        counts = {len(values) for values in (self.amplitudes, *self.history.values())}
+        if counts != {len(series.seeds)}:
+            raise ValueError(f"amplitudes do not fit the seeds {series.seeds}")
+
     def cut_at(self, order: int) -> FromSeries:
         """The same up to a lower order of the coordinates; its terms are kept."""
         lower = order_of(order)

@@ -13,6 +13,7 @@ from functools import cached_property
 from numbers import Real
 from typing import Any, ClassVar, Generic, Self, TypeGuard
 
+import mpmath
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import TypeVar
@@ -83,6 +84,9 @@ class Origin:
     def chosen_amplitudes(self) -> tuple[Any, ...] | None:
         """A in the order of the seeds, where they were chosen before the coefficients."""
         return None
+
+    def require_whole(self, torus: Torus) -> None:
+        """ValueError where it cannot be the origin of the torus: of what a file held."""
 
     def fields(self, torus: Torus) -> Iterator[Field]:
         """What only this way of making a torus knows of it."""
@@ -200,6 +204,30 @@ class Torus(Gridded, Generic[Made]):
         known = [chain, *rates, *amplitudes, *digits, *quality, *self.origin.facts()]
         doubts = "".join(f"; {warning}" for warning in self.warnings)
         return f"Torus({', '.join(known)}{doubts})"
+
+    def require_finite(self) -> None:
+        """ValueError where a coefficient or a phase is not finite."""
+        finite = (
+            np.isfinite if self.digits is None else np.vectorize(mpmath.isfinite, [bool])
+        )
+        if not np.all(finite(self.cosines)):
+            raise ValueError("a coefficient that is not finite")
+        if not all(map(mpmath.isfinite, self.phases.values())):
+            raise ValueError("a phase that is not finite")
+
+    def _require_whole(self) -> None:
+        self.require_finite()
+        s, shape = len(self.seeds), np.shape(self.harmonics)
+        self.chain.seeds_of(self.seeds)
+        if len(self.frequencies) != s or min(self.frequencies) <= 0:
+            raise ValueError(f"frequencies do not fit the seeds {self.seeds}")
+        if len(shape) != 2 or shape[1] != s or not shape[0]:
+            raise ValueError(f"harmonics of the shape {shape} for {s} seeds")
+        if (self.digits is None) != (self.cosines.dtype == np.float64):
+            raise ValueError(
+                f"coefficients of {self.cosines.dtype} for digits {self.digits}"
+            )
+        self.origin.require_whole(self)
 
     def doubted(self, warnings: Sequence[str]) -> Self:
         """The same torus with these warnings; its residual is kept where it is known."""

@@ -114,7 +114,7 @@ class Choice:
     def _loading(self) -> list[str]:
         names = "load, refine" if self.refined else "load"
         held = f'load("{Path(self.bundle).name}")'
-        return [f"from symfpu import {names}", "", f"torus = {held}.torus"]
+        return [f"from symfpu import {names}", "", f"torus = {held}"]
 
     def _refining(self) -> list[str]:
         return ["refined = refine(torus)"] if self.refined else []

@@ -12,7 +12,6 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from symfpu.bundles.bundle import save
 from symfpu.chain.chain import require_fixed_ends
 from symfpu.codegen.export import LANGUAGES
 from symfpu.codegen.export import export as export_source
@@ -23,6 +22,7 @@ from symfpu.plots.spectra import spectrum
 from symfpu.plots.style import Axes, styled
 from symfpu.plots.tori import section
 from symfpu.plots.tori import torus as torus_surface
+from symfpu.store.saved_file import save
 from symfpu.tori.verdict import Assessment
 from symfpu.workbench.choice import Choice
 from symfpu.workbench.drawing import HEIGHT, WIDTH, NotKnown, Sheets, picture_svg

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from symfpu.bundles.bundle import load
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.typed import decimal
@@ -13,6 +12,7 @@ from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
+from symfpu.store.saved_file import load
 from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.at_energy import series_at_energy
 from symfpu.tori.energy import Energy
@@ -68,12 +68,13 @@ def unrefined(choice: Choice) -> Choice:
 
 
 def _held(choice: Choice) -> Solved:
-    bundle = load(choice.bundle)
-    if bundle.torus is None:
+    torus = load(choice.bundle)
+    if not isinstance(torus, Torus):
         allowed = "a file with a torus or a breather in it"
         advice = "write one with save, or symfpu solve -o"
-        raise InputError("bundle", "a series without a torus", allowed, advice)
-    return Solved(choice, bundle.torus, bundle.series)
+        raise InputError("bundle", type(torus).__name__, allowed, advice)
+    series = torus.origin.series if comes_from(torus, FromSeries) else None
+    return Solved(choice, torus, series)
 
 
 def _solved(choice: Choice, near: Solved | None, tell: Progress) -> Solved:

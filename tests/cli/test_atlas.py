@@ -19,7 +19,7 @@ def test_borders_and_their_law_are_printed_saved_and_gone_on_with(capsys, tmp_pa
     file, saved = tmp_path / "atlas.jsonl", tmp_path / "atlas.symfpu"
     words = split("atlas --beta 1 --lengths 4,6,8 --packets low:1 --order 3 --by amplitude --borders ratio --reach 1 --file")
     out = shown(capsys, *words, file, "--save", saved, quiet=False)
-    kept = load(saved).result
+    kept = load(saved)
     lines = [line.split() for line in out.splitlines()]
     assert [line[:4] for line in lines[1:4]] == [[N, "low:1", "3", "ratio"] for N in "468"]
     assert [float(line[4]) for line in lines[1:4]] == [float(f"{b.energy:.4g}") for b in kept.borders]

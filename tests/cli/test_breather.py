@@ -44,7 +44,7 @@ def test_an_energy_that_the_family_passes_twice_is_a_warning(verb, capsys, tmp_p
     """N = 16, beta = 1: the energy turns at 0.8127. The file keeps it as the reason of its verdict."""
     file = tmp_path / "breather.symfpu"
     found = answer(capsys, *split(f"{verb} -N 16 --beta 1 --energy 0.79"), "-o", str(file))
-    assert symfpu.load(file).verdict["reasons"] == found["warnings"]
+    assert symfpu.saved_file(file).verdict["reasons"] == found["warnings"]
     assert [w.partition(":")[0] for w in found["warnings"]] == [
         "A = 4.83023 is the first orbit of this energy, the family from rest passes it again near A = 4.57684"
     ]
@@ -55,7 +55,7 @@ def test_many_digits(capsys, tmp_path):
     assert found["digits"] == 30
     assert len(found["energy"]) > 30
     assert (found["amplitudes"]["1"], found["warnings"]) == ("0.4", [])
-    assert type(load(tmp_path / "orbit").torus.origin) is IterativeRefinement
+    assert type(load(tmp_path / "orbit").origin) is IterativeRefinement
     found = answer(capsys, *WORDS, "--energy", "0.01", "--digits", "20")
     assert (found["energy"], found["warnings"]) == ("0.01", [])
     wave = answer(capsys, *WORDS, "--ends", "periodic", "--energy", "0.01", "--digits", "20")

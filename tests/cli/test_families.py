@@ -38,9 +38,9 @@ def test_refine_keeps_the_frequencies_and_solves_the_equations(capsys, solved):
     record = answer(capsys, "refine", solved)
     assert {"amplitudes", "energy", "harmonic_energy", "residual", "newton", "smallest_divisors", "verdict", "warnings"} <= set(record)
     assert record["frequencies"] == {"1": "0.3904", "3": "1.1118"}
-    assert record["residual"] < PROMISED_RESIDUAL < load(solved).torus.residual()
+    assert record["residual"] < PROMISED_RESIDUAL < load(solved).residual()
     assert record["verdict"] == "torus"
-    for q, a in load(solved).torus.amplitudes.items():
+    for q, a in load(solved).amplitudes.items():
         assert float(record["amplitudes"][str(q)]) == pytest.approx(a, rel=SHORT_SERIES)
     assert record["energy_error"] < FIXED_ENERGY
 
@@ -76,7 +76,7 @@ def test_refine_to_digits(capsys, solved, tmp_path):
     assert (record["origin"], record["digits"]) == ("IterativeRefinement", 22)
     assert record["residual"] < float(record["residual_bound"]) < COMMANDED_RESIDUAL**2
     assert float(record["amplitudes"]["1"]) == 0.1
-    assert load(more).torus.frequencies == load(fewer).torus.frequencies
+    assert load(more).frequencies == load(fewer).frequencies
     assert "in 22 digits" in shown(capsys, "show", more)
     at_energy = answer(capsys, "refine", solved, "--digits", "20", "--energy", "0.004")
     assert at_energy["energy"].startswith("0.00400000000000000000"[: len(at_energy["energy"])])
@@ -88,7 +88,7 @@ def test_files_without_a_torus_are_refused(capsys, tmp_path):
 
 
 def test_a_refined_torus_is_exported(capsys, solved, tmp_path):
-    torus = refine(load(solved).torus)
+    torus = refine(load(solved))
     refined = save(tmp_path / "refined.symfpu", torus)
     shown(capsys, "export", refined, "--lang", "numpy", "-o", tmp_path / "orbit.py")
     module = {"__name__": "orbit"}
@@ -107,7 +107,7 @@ def test_family_writes_members_table_and_pictures(capsys, tmp_path):
     assert lines[-2].startswith(f"  Member(torus, H={float(rows[-1][0]):.10g}")
     assert (float(rows[0][0]), float(rows[-1][0])) == pytest.approx((0.01, 0.05), rel=CONDITION)
     assert lines[-1] == f"written: {tmp_path}: family.csv, {len(rows)} members, 8 pictures"
-    members = [load(tmp_path / f"member-{k:04d}.symfpu").torus for k in range(len(rows))]
+    members = [load(tmp_path / f"member-{k:04d}.symfpu") for k in range(len(rows))]
     assert [f"{m.amplitudes[3]:.15g}" for m in members] == [row[3] for row in rows]
     pictures = {f"family-{name}" for name in ("shifts", "amplitudes", "spectra", "multipliers")}
     for suffix, magic in (("png", b"\x89PNG"), ("pdf", b"%PDF")):

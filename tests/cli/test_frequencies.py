@@ -23,7 +23,7 @@ def test_a_map_is_printed_drawn_saved_and_goes_on(capsys, tmp_path):
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
     table = [line.split() for line in out.splitlines() if line[:2] == "0."]
     assert [(row[0], row[1]) for row in table] == [("0.01", "2"), ("0.03162", "2"), ("0.1", "2")]
-    record, kept = answer(capsys, *MAP, "--file", rows), load(saved).result
+    record, kept = answer(capsys, *MAP, "--file", rows), load(saved)
     first = [float(x) for x in record["columns"]["frequency"][::3]]
     assert first == pytest.approx(kept.frequencies[:, 0], rel=MAP_FREQUENCY)
     assert (record["kind"], record["about"]["packet"]) == ("FrequencyMap", "1")
@@ -43,5 +43,5 @@ def test_the_torus_near_an_orbit_is_written_for_newton(capsys, tmp_path):
     words = (*ALPHA, "--packet", "1", "--energy", "0.01", "--time", "5e3")
     assert f"written: {near}" in shown(capsys, *words, "-o", near, "--angles", "2", quiet=False)
     shown(capsys, "refine", near, "-o", refined)
-    found = load(refined).result
+    found = load(refined)
     assert (found.warnings, found.seeds) == ((), (1, 2))

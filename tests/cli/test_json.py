@@ -12,7 +12,7 @@ from shlex import split
 import pytest
 
 import symfpu
-from symfpu import load
+from symfpu import saved_file
 from symfpu.cli.main import main
 from symfpu.cli.verbs import VERBS
 from tests.cli.running import answer
@@ -119,9 +119,9 @@ def test_every_verb_has_the_same_keys_and_number_forms(name, made, capsys, tmp_p
     for part in found.get("figures", {}).values():
         assert list(part) == ["kind", "title", "remarks", "claims", "panels", "numbers"]
     if name in KEPT:
-        bundle = load("kept.symfpu")
-        assert bundle.provenance["command"].startswith(f"symfpu {name} ")
-        kept = bundle.result.record()
+        held = saved_file("kept.symfpu")
+        assert held.provenance["command"].startswith(f"symfpu {name} ")
+        kept = held.result.record()
         assert {key: found[key] for key in kept if key not in OF_THE_RUN} == {key: kept[key] for key in kept if key not in OF_THE_RUN}
 
 

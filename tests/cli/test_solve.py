@@ -56,7 +56,7 @@ def test_without_an_order_it_solves_the_equations_of_motion(capsys, tmp_path):
     found = answer(capsys, *words)
     torus = symfpu.torus(CHAIN, (1, 2), energy="0.01")
     assert (found["verdict"], found["amplitudes"]) == ("torus", by_seed(torus.amplitudes))
-    assert symfpu.load(tmp_path / "torus.symfpu").torus.amplitudes == torus.amplitudes
+    assert symfpu.load(tmp_path / "torus.symfpu").amplitudes == torus.amplitudes
     assert "verdict: torus" in shown(capsys, *words[:-2], quiet=False)
 
 

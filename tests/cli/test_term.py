@@ -62,7 +62,7 @@ def test_the_series_is_kept(capsys, tmp_path):
     file = tmp_path / "all.symfpu"
     shown(capsys, *ALL, "-q", "1", "-o", file)
     kept = load(file)
-    assert repr(kept.series) == repr(lindstedt(EVERY, (1, "N-1"), order=2))
+    assert repr(kept) == repr(lindstedt(EVERY, (1, "N-1"), order=2))
     assert kept.provenance["command"].startswith("symfpu term -N N")
     assert "for N >= 7" in shown(capsys, "show", file)
 

@@ -4,7 +4,7 @@ import pytest
 
 from symfpu import Chain, InputError, compile_evaluator, export, lindstedt, save, solve_amplitudes
 from symfpu.cli.main import main
-from tests.bundles.test_bundle import SERIES
+from tests.store.test_saved_file import SERIES
 
 
 @pytest.fixture(scope="module")

@@ -10,8 +10,8 @@ import pytest
 from symfpu import BundleError, Chain, InputError, Newton, family
 from symfpu.errors import RunInterrupted
 from symfpu.files.sealed import document_in, write_sealed
-from tests.bundles.test_bundle import same
 from tests.families.cases import ROUND, RUNS, whole
+from tests.store.test_saved_file import same
 from tests.tolerances import FIXED_ENERGY
 
 

@@ -135,7 +135,7 @@ def test_a_folder_goes_on_and_a_file_keeps_it(tmp_path):
     found = family(TODA, (1, -3), "0.03", **goes, folder=tmp_path / "out")
     alike(found, expected)
     assert [m.normal.frequencies for m in found.members] == [m.normal.frequencies for m in expected.members]
-    kept = load(save(tmp_path / "kept", found)).result
+    kept = load(save(tmp_path / "kept", found))
     assert repr(kept) == repr(found)
     fixed = Chain(8, potential=toda("1/2"))
     with pytest.raises(InputError, match="the same family"):

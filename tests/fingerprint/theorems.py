@@ -134,6 +134,6 @@ def exports():
 def files():
     series = lindstedt(ALPHA, (1, 2), ("0.3905", "0.7663"), 4, digits=30)
     with tempfile.TemporaryDirectory() as folder:
-        found = symfpu.load(symfpu.save(Path(folder) / "torus", solve_amplitudes(series), verdict={"verdict": "good"}))
+        found = symfpu.saved_file(symfpu.save(Path(folder) / "torus", solve_amplitudes(series), verdict={"verdict": "good"}))
     yield "bundle", found.record()
     yield "test vectors", noise([dict(point._asdict()) for point in found.test_vectors])

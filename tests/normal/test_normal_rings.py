@@ -179,7 +179,7 @@ def test_a_missing_mode_leaves_the_verdict_open(tmp_path, capsys):
     kept = str(tmp_path / "modes.symfpu")
     assert main(["stability", file, "--json", "--save", kept]) == 0
     record = json.loads(capsys.readouterr().out)
-    found = symfpu.load(kept).result
+    found = symfpu.load(kept)
     assert record["missing"] == {"-1": found.missing[-1]}
     assert (record["stable"], found.stable) == (None, None)
     assert found.verdict == "undecided: no normal frequency of modes -1"

@@ -101,7 +101,7 @@ def test_more_digits_continue_fewer_and_amplitudes_lead_back_to_frequencies(tmp_
         assert abs(mpmath.mpf((again.frequency - more.frequency).numerator) / (again.frequency - more.frequency).denominator) < ten(-30)
     resumed = refine(near("alpha"), amplitudes=held, digits=36, file=file)
     assert resumed.origin.sweeps > again.origin.sweeps
-    loaded = load(save(tmp_path / "torus", more)).torus
+    loaded = load(save(tmp_path / "torus", more))
     assert type(loaded.origin) is symfpu.IterativeRefinement
     assert (loaded.cosines == more.cosines).all()
     assert (loaded.origin.bound, loaded.origin.error, loaded.origin.sweeps, loaded.digits) == (
@@ -134,7 +134,7 @@ def test_standing_waves_have_the_digits_of_fixed_ends(tmp_path):
         assert abs(standing.energy("0.4") / (2 * fixed.energy("0.4")) - 1) < ten(-25)
         difference = standing.x("0.4")[1:4] - fixed.x("0.4")
         assert max(abs(difference)) < ten(-25)
-    loaded = load(save(tmp_path / "torus", standing)).torus
+    loaded = load(save(tmp_path / "torus", standing))
     assert (loaded.cosines == standing.cosines).all()
     with pytest.raises(InputError, match="unfold"):
         refine(standing, digits=30)

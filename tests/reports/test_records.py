@@ -59,8 +59,8 @@ def attributes_of(kind):
 
 
 def test_a_file_has_the_record_of_what_it_holds():
-    bundle = result("Bundle")
-    found, inside = bundle.record(), bundle.torus.record()
+    held = result("SavedFile")
+    found, inside = held.record(), held.result.record()
     assert (inside["kind"], inside["origin"]) == ("Torus", "FromSeries")
     assert {key: found[key] for key in inside if key != "assessment"} == inside
     assert {"provenance", "assessment", "test_vectors"} <= set(found)

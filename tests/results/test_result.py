@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from symfpu import Chain, InputError, __version__
+from symfpu import Chain, InputError, __version__, load, save
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, chain_fields
 from symfpu.results.grid import Grid, Variable
 from symfpu.results.result import Gridded
 from tests.elements import read
+from tests.store.test_saved_file import same
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +55,12 @@ def test_its_html_has_its_answer_and_what_has_a_label(spread):
 def test_it_is_a_table_and_a_data_set(spread):
     assert spread.to_frame().to_dict("list") == {"time": [0.0, 1.0], "size": [1.0, 2.0]}
     assert spread.to_xarray()["size"].dims == ("time",)
+
+
+def test_it_is_kept_in_a_file(spread, tmp_path):
+    back = load(save(tmp_path / "spread", spread))
+    assert type(back) is Spread
+    assert same(back, spread)
 
 
 def test_without_a_picture_it_says_where_pictures_are(spread):

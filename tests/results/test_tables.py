@@ -23,7 +23,7 @@ from symfpu import (
 )
 from symfpu.results.attributes import attributes, plain
 from symfpu.results.grid import ROUNDED, Grid, Variable
-from tests.bundles.test_bundle import same
+from tests.store.test_saved_file import same
 from tests.tolerances import COEFFICIENT, FORTY_DIGITS, ROUNDING
 
 CHAIN, SEEDS = Chain(8, alpha="0.3", beta="0.1"), (1, 2)

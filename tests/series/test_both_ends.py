@@ -7,7 +7,7 @@ from symfpu import Chain, InputError, export, lindstedt, load, sample_series, sa
 from symfpu.algebra.grading import Grading
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.waves import WaveModes
-from tests.bundles.test_bundle import same
+from tests.store.test_saved_file import same
 from tests.tolerances import COEFFICIENT, ROUNDING, WAVE_SLOPE, WAVE_SLOPE_ROUNDING
 
 LAWS = ({"alpha": "0.3"}, {"beta": "-0.2"}, {"potential": "toda:1/2"})
@@ -85,7 +85,7 @@ def test_the_table_has_every_coefficient(series):
 
 
 def test_it_comes_back_from_a_file(series, tmp_path):
-    assert same(load(save(tmp_path / "series", series)).series, series)
+    assert same(load(save(tmp_path / "series", series)), series)
 
 
 def test_modes_that_it_does_not_have(series):

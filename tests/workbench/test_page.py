@@ -231,7 +231,7 @@ def test_waves_of_a_ring_are_seen_refined_and_saved(page, tmp_path):
     exec(lines(page), names)
     page.wait_for_function(TEXT, arg=["table.seeds", f"{names['refined'].amplitudes[1]:.10g}"])
     path = downloaded(page, "Save as bundle", tmp_path / "ring.symfpu")
-    assert type(load(path).torus.origin).__name__ == "Newton"
+    assert type(load(path).origin).__name__ == "Newton"
 
 
 def test_amplitudes_of_a_ring_are_refused_by_name(page):
@@ -243,7 +243,7 @@ def test_amplitudes_of_a_ring_are_refused_by_name(page):
 
 
 def test_a_bundle_is_saved_and_loaded(page, tmp_path):
-    kept = load(downloaded(page, "Save as bundle", tmp_path / "kept.symfpu")).torus
+    kept = load(downloaded(page, "Save as bundle", tmp_path / "kept.symfpu"))
     assert {q: f"{a:.10g}" for q, a in kept.amplitudes.items()} == amplitudes_shown(page)
     other = solve_amplitudes(lindstedt(Chain(8, beta="0.3"), (1,), ("0.3905",), 4))
     before = picture(page)

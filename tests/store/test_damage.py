@@ -15,11 +15,9 @@ import numpy as np
 import pytest
 import symengine as se
 
-from symfpu import BundleError, Chain, integrate, lindstedt, prove_propagation
-from symfpu import save as save_any
-from symfpu.bundles.bundle import load, save
+from symfpu import BundleError, Chain, lindstedt, load, prove_propagation, save, saved_file
 from symfpu.files.archive import Archive
-from tests.bundles.test_bundle import ALPHA, digest, healthy, opened, same  # noqa: F401 (a fixture)
+from tests.store.test_saved_file import ALPHA, digest, healthy, opened, same  # noqa: F401 (a fixture)
 from tests.system import raising
 
 
@@ -27,7 +25,7 @@ def refused(path, data):
     """Whether these bytes are refused, by one line that names the file; else what they load as."""
     path.write_bytes(data)
     try:
-        return load(path)
+        return saved_file(path)
     except BundleError as error:
         line, shown = str(error), error.__cause__ or (error.__context__ and not error.__suppress_context__)
     assert line.startswith(f"{path} ")
@@ -95,12 +93,6 @@ def test_foreign_files_are_refused(kind, tmp_path):
         load(tmp_path / "file")
 
 
-def test_a_result_without_series_and_solution_is_not_called_damaged(tmp_path):
-    orbit = integrate(Chain(4, beta=1), [0.1, 0, 0], [0, 0, 0], 10, step=0.125)
-    with pytest.raises(BundleError, match="holds Orbit, no series and no solution; symfpu show opens it"):
-        load(save_any(tmp_path / "orbit", orbit))
-
-
 def test_a_lack_of_memory_is_no_damage(healthy, tmp_path, monkeypatch):
     path = tmp_path / "file"
     path.write_bytes(healthy[1])
@@ -144,42 +136,51 @@ class Bomb:
         return os.mkdir, ("executed",)
 
 
+def origin_in(body):
+    """The fields of the origin of a torus."""
+    return body["result"]["fields"]["origin"]["fields"]
+
+
 CHANGES = {
-    "newer": (lambda m, b: b.update(schema=9), r"newer symfpu \(schema 9; this one reads 8\); update symfpu"),
-    "older": (lambda m, b: b.update(schema=7), r"is of an older format \(schema 7; this symfpu reads 8\); compute it again"),
-    "newer without a digest": (lambda m, b: b.update(schema=9, arrays={}), "newer symfpu"),
+    "newer": (lambda m, b: b.update(schema=10), r"newer symfpu \(schema 10; this one reads 9\); update symfpu"),
+    "older": (lambda m, b: b.update(schema=8), r"is of an older format \(schema 8; this symfpu reads 9\); compute it again"),
+    "newer without a digest": (lambda m, b: b.update(schema=10, arrays={}), "newer symfpu"),
     "schema 0": (lambda m, b: b.update(schema=0), "schema"),
-    "schema as text": (lambda m, b: b.update(schema="8"), "schema"),
+    "schema as text": (lambda m, b: b.update(schema="9"), "schema"),
     "foreign format": (lambda m, b: b.update(format="another"), "is not a symfpu bundle"),
-    "missing array": (lambda m, b: m.pop("corrections.npy"), "corrections"),
-    "undeclared array": (lambda m, b: b["arrays"].pop("corrections"), "corrections"),
+    "missing array": (lambda m, b: m.pop("part0.corrections.npy"), "not the arrays"),
+    "undeclared array": (lambda m, b: b["arrays"].pop("part0.corrections"), "corrections"),
     "extra member": (lambda m, b: m.update(readme=b"x"), "readme"),
-    "missing key": (lambda m, b: b["series"].pop("unit"), "unit"),
-    "pickled objects": (lambda m, b: m.update({"coordinates.npy": numpy_file(np.array([Bomb()], dtype=object))}), "coordinates"),
+    "missing key": (lambda m, b: b["parts"][0].pop("unit"), "unit"),
+    "pickled objects": (lambda m, b: m.update({"part0.coordinates.npy": numpy_file(np.array([Bomb()], dtype=object))}), "coordinates"),
     "other dtype": (
-        lambda m, b: m.update({"corrections.npy": numpy_file(np.zeros(4, dtype=np.int64))}),
+        lambda m, b: m.update({"part0.corrections.npy": numpy_file(np.zeros(4, dtype=np.int64))}),
         "is not an array of 4 numbers <f8",
     ),
-    "other shape": (lambda m, b: m.update({"coordinates.npy": numpy_file(np.zeros(999))}), "coordinates.npy holds 8120 bytes where"),
-    "high order": (lambda m, b: b["series"].update(order=10**4), "more rows than the file holds"),
-    "long chain": (lambda m, b: b["series"].update(N=10**6), "coordinates"),
-    "huge order": (lambda m, b: b["series"].update(order=10**18), "order = .*from 0 to 10000"),
-    "huge chain": (lambda m, b: b["series"].update(N=10**18), "N = .*from 2 to 1000000"),
-    "no chain": (lambda m, b: b["series"].update(N=1), "N = 1"),
-    "no coupling": (lambda m, b: b["series"].update(alpha="0"), "alpha, beta"),
-    "zero denominator": (lambda m, b: b["series"].update(alpha="1/0"), "ZeroDivisionError"),
-    "code for a number": (lambda m, b: b["series"].update(alpha="__import__('os').mkdir('executed')"), "is no exact number"),
-    "long power": (lambda m, b: b["series"].update(alpha="1e999999999"), "is no exact number"),
-    "seed outside": (lambda m, b: b["series"].update(seeds=[1, 8]), "seeds"),
-    "seeds out of order": (lambda m, b: b["series"].update(seeds=[2, 1]), "do not go together"),
-    "frequency missing": (lambda m, b: b["series"].update(frequencies=["0.4"]), "do not go together"),
-    "negative frequency": (lambda m, b: b["series"].update(frequencies=["0.4", "-0.8"]), "do not go together"),
-    "no frequencies": (lambda m, b: b["series"].update(frequencies=None), "do not fit"),
-    "unknown ring": (lambda m, b: b["series"].update(ring="octonions", frequencies=None), "octonions"),
-    "amplitude of no seed": (lambda m, b: b["torus"].update(amplitudes={"1": "0.1", "3": "0.1"}), "seeds"),
-    "amplitude of code": (lambda m, b: b["torus"]["amplitudes"].update({"1": {"exact": "exit()"}}), "is no binary number"),
-    "order of the torus": (lambda m, b: b["torus"].update(order=4), "no torus of order 4"),
-    "frequency order": (lambda m, b: b["torus"].update(frequency_order=4), "no torus"),
+    "other shape": (
+        lambda m, b: m.update({"part0.coordinates.npy": numpy_file(np.zeros(999))}),
+        "holds 8120 bytes where",
+    ),
+    "high order": (lambda m, b: b["parts"][0].update(order=10**4), "more rows than the file holds"),
+    "long chain": (lambda m, b: b["parts"][0].update(N=10**6), "coordinates"),
+    "huge order": (lambda m, b: b["parts"][0].update(order=10**18), "order = .*from 0 to 10000"),
+    "huge chain": (lambda m, b: b["parts"][0].update(N=10**18), "N = .*from 2 to 1000000"),
+    "no chain": (lambda m, b: b["parts"][0].update(N=1), "N = 1"),
+    "no coupling": (lambda m, b: b["parts"][0].update(alpha="0"), "alpha, beta"),
+    "zero denominator": (lambda m, b: b["parts"][0].update(alpha="1/0"), "ZeroDivisionError"),
+    "code for a number": (lambda m, b: b["parts"][0].update(alpha="__import__('os').mkdir('executed')"), "is no exact number"),
+    "long power": (lambda m, b: b["parts"][0].update(alpha="1e999999999"), "is no exact number"),
+    "seed outside": (lambda m, b: b["parts"][0].update(seeds=[1, 8]), "seeds"),
+    "seeds out of order": (lambda m, b: b["parts"][0].update(seeds=[2, 1]), "do not go together"),
+    "frequency missing": (lambda m, b: b["parts"][0].update(frequencies=["0.4"]), "do not go together"),
+    "negative frequency": (lambda m, b: b["parts"][0].update(frequencies=["0.4", "-0.8"]), "do not go together"),
+    "no frequencies": (lambda m, b: b["parts"][0].update(frequencies=None), "do not fit"),
+    "unknown ring": (lambda m, b: b["parts"][0].update(ring="octonions", frequencies=None), "octonions"),
+    "amplitude of no seed": (lambda m, b: origin_in(b)["amplitudes"]["tuple"].append({"float": "0.1"}), "seeds"),
+    "amplitude of code": (lambda m, b: origin_in(b)["amplitudes"].update(tuple=[{"mpf": {"exact": "exit()"}}] * 2), "is no binary number"),
+    "order of the torus": (lambda m, b: origin_in(b).update(order=4), "no torus of order 4"),
+    "frequency order": (lambda m, b: origin_in(b).update(frequency_order=4), "no torus"),
+    "another chain": (lambda m, b: b["result"]["fields"]["chain"]["chain"].update(alpha="0.4"), "the series is one of another torus"),
     "verdict as text": (lambda m, b: b.update(verdict="good"), "is damaged"),
 }
 
@@ -197,17 +198,17 @@ def test_forged_files_are_refused(case, healthy, tmp_path, monkeypatch):
 
 def test_what_a_later_version_adds_to_the_same_schema_is_ignored(healthy, tmp_path):
     def change(members, body):
-        body["news"] = body["series"]["news"] = body["torus"]["news"] = 1
+        body["news"] = body["parts"][0]["news"] = 1
         members["news.npy"], body["arrays"]["news"] = numpy_file(np.zeros(3)), ""
 
     bundle, data = healthy
     (tmp_path / "later").write_bytes(data)
-    assert same(load(forged(tmp_path / "later", change)), bundle)
+    assert same(saved_file(forged(tmp_path / "later", change)), bundle)
 
 
 def test_changes_without_the_digest_are_found(healthy, tmp_path):
     """The archive's own checksums are right, as after a careless edit."""
-    for name in ("bundle.json", "coordinates.npy"):
+    for name in ("bundle.json", "part0.coordinates.npy"):
         (tmp_path / "edited").write_bytes(healthy[1])
         members, _ = opened(tmp_path / "edited")
         old, new = (b'"0.3"', b'"0.4"') if name == "bundle.json" else (members[name][-8:], b"12345678")
@@ -219,7 +220,7 @@ def test_changes_without_the_digest_are_found(healthy, tmp_path):
 def test_a_member_may_occur_once(healthy, tmp_path):
     (tmp_path / "twice").write_bytes(healthy[1])
     with pytest.warns(UserWarning, match="Duplicate"), zipfile.ZipFile(tmp_path / "twice", "a") as archive:
-        archive.writestr("coordinates.npy", b"another")
+        archive.writestr("part0.coordinates.npy", b"another")
     with pytest.raises(BundleError, match="a member occurs twice"):
         load(tmp_path / "twice")
 
@@ -238,22 +239,22 @@ def forged_integers(name, change):
 @pytest.mark.parametrize(
     ("forge", "message"),
     [
-        (forged_integers("program_right.npy", lambda a: a.__setitem__(0, 100)), "comes before its parts"),
-        (forged_integers("program_left.npy", lambda a: a.__setitem__(0, -1)), "comes before its parts"),
-        (forged_integers("program_start.npy", lambda a: a.__setitem__(-2, 100)), "are in no order"),
-        (forged_integers("program_start.npy", lambda a: a.__setitem__(0, 1)), "are in no order"),
-        (forged_integers("coordinates.npy", lambda a: a.__setitem__(0, 10**6)), "is no node of the program"),
-        (forged_integers("coordinates.npy", lambda a: a.__setitem__(0, -2)), "is no node of the program"),
-        (lambda m, b: b["series"]["program"]["symbols"].pop(), "other leaves than symbols"),
-        (lambda m, b: b["series"]["program"]["symbols"].__setitem__(0, ["eval", "exit()"]), "no kind of symbol"),
-        (lambda m, b: b["series"]["program"].update(terms=2**50), "a program of"),
-        (lambda m, b: b["series"]["program"]["integers"].update(program_left="|O"), r"no kind of integers: '\|O'"),
-        (lambda m, b: b["series"]["program"]["integers"].update(program_left="<i8"), "bytes where"),
-        (lambda m, b: b["series"]["program"]["integers"].pop("program_left"), "KeyError 'program_left'"),
-        (lambda m, b: b["series"]["program"].update(integers="<f8"), "no kind of integers"),
-        (lambda m, b: b["series"]["program"]["symbols"][0].append("0"), "no harmonic"),
-        (lambda m, b: b["series"]["program"]["symbols"][0].append(True), "no harmonic"),
-        (lambda m, b: b["series"]["program"]["symbols"][0].__setitem__(1, 0), "symbol = 0"),
+        (forged_integers("part0.program_right.npy", lambda a: a.__setitem__(0, 100)), "comes before its parts"),
+        (forged_integers("part0.program_left.npy", lambda a: a.__setitem__(0, -1)), "comes before its parts"),
+        (forged_integers("part0.program_start.npy", lambda a: a.__setitem__(-2, 100)), "are in no order"),
+        (forged_integers("part0.program_start.npy", lambda a: a.__setitem__(0, 1)), "are in no order"),
+        (forged_integers("part0.coordinates.npy", lambda a: a.__setitem__(0, 10**6)), "is no node of the program"),
+        (forged_integers("part0.coordinates.npy", lambda a: a.__setitem__(0, -2)), "is no node of the program"),
+        (lambda m, b: b["parts"][0]["program"]["symbols"].pop(), "other leaves than symbols"),
+        (lambda m, b: b["parts"][0]["program"]["symbols"].__setitem__(0, ["eval", "exit()"]), "no kind of symbol"),
+        (lambda m, b: b["parts"][0]["program"].update(terms=2**50), "a program of"),
+        (lambda m, b: b["parts"][0]["program"]["integers"].update(program_left="|O"), r"no kind of integers: '\|O'"),
+        (lambda m, b: b["parts"][0]["program"]["integers"].update(program_left="<i8"), "bytes where"),
+        (lambda m, b: b["parts"][0]["program"]["integers"].pop("program_left"), "KeyError 'program_left'"),
+        (lambda m, b: b["parts"][0]["program"].update(integers="<f8"), "no kind of integers"),
+        (lambda m, b: b["parts"][0]["program"]["symbols"][0].append("0"), "no harmonic"),
+        (lambda m, b: b["parts"][0]["program"]["symbols"][0].append(True), "no harmonic"),
+        (lambda m, b: b["parts"][0]["program"]["symbols"][0].__setitem__(1, 0), "symbol = 0"),
     ],
 )
 def test_forged_programs_are_refused(forge, message, tmp_path):
@@ -279,7 +280,7 @@ def test_forged_programs_are_refused(forge, message, tmp_path):
 def test_forged_series_for_all_lengths_are_refused(entries, message, tmp_path):
     path = save(tmp_path / "all", lindstedt(Chain("N", alpha=1), (1, "N-1"), order=2))
     with pytest.raises(BundleError, match=message):
-        load(forged(path, lambda m, b: b["series"].update(entries)))
+        load(forged(path, lambda m, b: b["parts"][0].update(entries)))
 
 
 def test_compressions_that_inflate_without_a_bound_are_refused(healthy, tmp_path):
@@ -293,10 +294,10 @@ def test_names_of_symbols_are_only_names(tmp_path):
     path = save(tmp_path / "symbolic", lindstedt(ALPHA, (1,), order=1))
 
     def rename(members, body):
-        program = body["series"]["program"]
+        program = body["parts"][0]["program"]
         program["symbols"] = [["symbol", f"exit({i})"] for i, _ in enumerate(program["symbols"])]
 
-    assert se.Symbol("exit(1)") in load(forged(path, rename)).series.coordinates[1][-1, 1].free_symbols
+    assert se.Symbol("exit(1)") in load(forged(path, rename)).coordinates[1][-1, 1].free_symbols
 
 
 def memory_of(action):
@@ -311,9 +312,9 @@ def memory_of(action):
 
 def test_claims_and_bombs_allocate_nothing(healthy, tmp_path):
     """A member of 200 MB in 200 kB; a header for 10^15 numbers; sizes that the directory makes up."""
-    path, size = tmp_path / "bomb", struct.pack("<I", len(member_of(healthy[1], "coordinates.npy")))
+    path, size = tmp_path / "bomb", struct.pack("<I", len(member_of(healthy[1], "part0.coordinates.npy")))
     header = numpy_file(np.zeros(0)).replace(b"(0,), }" + b" " * 14, b"(1000000000000000,), }"[:21])
-    cases = [{"coordinates.npy": numpy_file(np.zeros(25_000_000))}, {"coordinates.npy": header}]
+    cases = [{"part0.coordinates.npy": numpy_file(np.zeros(25_000_000))}, {"part0.coordinates.npy": header}]
     for members in cases:
         path.write_bytes(healthy[1])
         forged(path, lambda m, b, members=members: m.update(members))

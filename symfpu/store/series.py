@@ -13,16 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.algebra.grading import canonical_count
-from symfpu.bundles.entries import (
-    FIXED,
-    chain_entries,
-    chain_from,
-)
 from symfpu.chain.chain import Chain
 from symfpu.chain.length import label_entry, seed_labels
 from symfpu.files.archive import (
     Archive,
-    BundleError,
     Json,
 )
 from symfpu.numbers.typed import fraction, fraction_text, integer, order_of
@@ -34,11 +28,15 @@ from symfpu.series.monomials import shared_grading
 from symfpu.series.rings import FIXED_POINT, FLOAT64, RINGS, RingKind
 from symfpu.series.series import LindstedtSeries
 from symfpu.series.tables import Shapes
+from symfpu.store.entries import (
+    FIXED,
+    chain_entries,
+    chain_from,
+)
 
 Array = NDArray[Any]
 Labels = tuple[int, ...]  # of seeds
 RADII = "<f8"
-OF_WAVES = "travelling"  # the ring that series of waves once had in files
 
 
 def series_tables(series: LindstedtSeries) -> tuple[dict[str, Array], Json]:
@@ -188,9 +186,6 @@ def _kind(body: Json) -> RingKind:
 
 def series_from(archive: Archive, body: Json) -> LindstedtSeries:
     """The series again; whatever does not fit is an error."""
-    if body["ring"] == OF_WAVES:
-        problem = "holds a series of waves in the format before lindstedt made them"
-        raise BundleError(archive.path, problem, "make it again: lindstedt(chain, ...)")
     chain = chain_from(body, body.get("ends", FIXED))
     seeds = _seeds(chain, body["seeds"])
     order = order_of(body["order"])

@@ -28,21 +28,6 @@ class UnknownPotential(ValueError):
         super().__init__(f"holds a chain of the potential {written!r:.60}")
 
 
-def travelling_entry(torus: Any) -> Json:
-    """Whether waves of a ring travel, for tori of a ring."""
-    return {"travels": torus.travels} if torus.chain.periodic else {}
-
-
-def travels_from(body: Json) -> bool:
-    """The same of entries; ValueError for what does not say it."""
-    if body.get("ends", FIXED) == FIXED:
-        return False
-    if not isinstance(body["travels"], bool):
-        raise ValueError("waves that neither travel nor stand")
-    travels: bool = body["travels"]
-    return travels
-
-
 def number_entry(value: Any) -> str | dict[str, str]:
     """A double as its shortest decimal, or an mpf by its bits.
 

@@ -7,24 +7,53 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import BundleError, Chain, InputError, Newton, Torus, lindstedt, refine, solve_amplitudes, toda, unfold
-from symfpu.bundles.bundle import load, save
-from tests.bundles.test_bundle import opened, same
-from tests.bundles.test_bundle_damage import forged, numpy_file
+from symfpu import BundleError, Chain, InputError, Newton, Torus, lindstedt, load, refine, save, saved_file, solve_amplitudes, toda, unfold
 from tests.every_result import result
+from tests.store.test_damage import forged, numpy_file
+from tests.store.test_saved_file import opened, same
 from tests.tori.solutions import CASES
 
 
-def torus_entry(**changes):
-    return lambda members, body: body["torus"].update(changes)
+def fields_in(body):
+    return body["result"]["fields"]
+
+
+def torus_field(**changes):
+    return lambda members, body: fields_in(body).update(changes)
+
+
+def chain_entry(**changes):
+    return lambda members, body: fields_in(body)["chain"]["chain"].update(changes)
 
 
 def series_entry(**changes):
-    return lambda members, body: body["series"].update(changes)
+    return lambda members, body: body["parts"][0].update(changes)
 
 
-def made_entry(**changes):
-    return lambda members, body: body["torus"]["made"].update(changes)
+def origin_field(**changes):
+    return lambda members, body: fields_in(body)["origin"]["fields"].update(changes)
+
+
+def fractions(*values):
+    return {"tuple": [{"fraction": value} for value in values]}
+
+
+def by_seed(*values):
+    return {"dict": [[q, {"float": value}] for q, value in enumerate(values, 1)]}
+
+
+def step(*values):
+    names = ("residual", "change", "conditions", "krylov")
+    fields = dict(zip(names, [*({"float": str(x)} for x in values[:3]), *values[3:]], strict=False))
+    return {"tuple": [{"class": "symfpu.refinement.newton:NewtonStep", "fields": fields}]}
+
+
+def shape(field, key="shape", **changes):
+    def change(members, body):
+        node = fields_in(body)[field]
+        node[key] = changes.get("to") or [n + changes["more"] for n in node[key]]
+
+    return change
 
 
 def array(name, values):
@@ -38,26 +67,26 @@ def without_harmonics(members, body):
 
 INFINITE = np.full((14, 7), np.inf).ravel()
 OF_ORBITS = {
-    "another origin": (torus_entry(origin="Chain"), "no solution is of the origin 'Chain'"),
-    "another kind": (torus_entry(kind="sums"), "a torus of kind 'sums' without a series"),
-    "no torus": (lambda members, body: body.update(torus=None), "a torus of kind None"),
-    "negative frequency": (torus_entry(frequencies=["-1.1"]), "do not fit the seeds"),
-    "two frequencies": (torus_entry(frequencies=["1.1", "1.2"]), "do not fit the seeds"),
-    "a frequency of code": (torus_entry(frequencies=["exit()"]), "is damaged"),
-    "no phases": (torus_entry(phases=[]), "do not fit the seeds"),
-    "seed outside": (torus_entry(seeds=[8]), "seeds"),
-    "no harmonics": (torus_entry(harmonics=0), "harmonics = 0"),
-    "many harmonics": (torus_entry(harmonics=10**15), "bytes where"),
-    "digits": (torus_entry(digits=20), "words"),
-    "infinite": (array("cosines", INFINITE[: 13 * 7]), "a number of cosines is not finite"),
+    "another origin": (torus_field(origin={"class": "symfpu.chain.chain:Chain", "fields": {}}), "no result is of the class"),
+    "an origin that is none": (torus_field(origin=1), "Torus.origin is of the type int"),
+    "no torus": (lambda members, body: body.update(result=None), "NoneType is no result"),
+    "negative frequency": (torus_field(frequencies=fractions("-1.1")), "do not fit the seeds"),
+    "two frequencies": (torus_field(frequencies=fractions("1.1", "1.2")), "do not fit the seeds"),
+    "a frequency of code": (torus_field(frequencies=fractions("exit()")), "is damaged"),
+    "seed outside": (torus_field(seeds={"tuple": [8]}), "seeds"),
+    "no harmonics": (shape("harmonics", to=[0, 1]), "bytes where"),
+    "many harmonics": (shape("harmonics", to=[10**15, 1]), "bytes where"),
+    "digits": (torus_field(digits=20), "for digits 20"),
+    "infinite": (array("cosines", INFINITE[: 13 * 7]), "a coefficient that is not finite"),
     "gaps": (array("harmonics", 2 * np.arange(13)), "not those of a periodic orbit"),
-    "steps": (made_entry(iterations=-1), "iterations"),
-    "sigma": (made_entry(sigma="exit()"), "exit"),
+    "steps": (origin_field(iterations=-1), "iterations"),
+    "sigma": (origin_field(sigma={"float": "exit()"}), "exit"),
 }
 OF_DIGITS = {
-    "no words": (torus_entry(words=0), "words = 0"),
-    "many words": (torus_entry(words=10**15), "bytes where"),
-    "bound": (made_entry(bound={"exact": "exit()"}), "is no binary number"),
+    "no words": (shape("cosines", to=[0, 0]), "0 numbers of 0 words"),
+    "many words": (shape("cosines", to=[10**15, 2]), "numbers of 2 words"),
+    "a large shape": (shape("cosines", "of", to=[10**15, 7]), "numbers of"),
+    "bound": (origin_field(bound={"mpf": {"exact": "exit()"}}), "is no binary number"),
 }
 OF_WAVES = {
     "ends of a series": (series_entry(ends="fixed"), "is damaged"),
@@ -66,16 +95,15 @@ OF_WAVES = {
     "a frequency less of a series": (series_entry(frequencies=["1"]), "is damaged"),
     "a shorter ring": (series_entry(N=3), "is damaged"),
     "unit": (series_entry(unit="none"), "is damaged"),
-    "a ring of before": (series_entry(ring="travelling"), r"make it again: lindstedt\(chain"),
+    "a ring of another name": (series_entry(ring="travelling"), "no ring 'travelling'"),
 }
 OF_RINGS = {
-    "ends of a torus": (torus_entry(ends="round"), "is damaged"),
-    "a seed less": (torus_entry(seeds=[1]), "is damaged"),
-    "a huge count": (torus_entry(harmonics=10**9), "is damaged"),
-    "a phase less": (torus_entry(phases=["0"]), "is damaged"),
-    "a frequency of zero": (torus_entry(frequencies=["0", "1"]), "is damaged"),
-    "travels": (torus_entry(travels=1), "is damaged"),
-    "a ring of one": (torus_entry(N=1), "is damaged"),
+    "ends of a torus": (chain_entry(ends="round"), "is damaged"),
+    "a seed less": (torus_field(seeds={"tuple": [1]}), "is damaged"),
+    "a huge count": (shape("cosines", to=[10**9, 1]), "is damaged"),
+    "a frequency of zero": (torus_field(frequencies=fractions("0", "1")), "is damaged"),
+    "travels": (torus_field(travels=1), "is damaged"),
+    "a ring of one": (chain_entry(N=1), "is damaged"),
 }
 
 
@@ -83,15 +111,10 @@ def filled(name, value, more=0, kind="<f8"):
     """An array of the right length, or longer, with one value at every place."""
 
     def change(members, body):
-        entry = body["torus"]
-        width = entry["N"] - 1 if name == "cosines" else len(entry["seeds"])
-        members[f"{name}.npy"] = numpy_file(np.full(entry["harmonics"] * width + more, value, kind))
+        count = np.prod(fields_in(body)[name]["shape"])
+        members[f"{name}.npy"] = numpy_file(np.full(count + more, value, kind))
 
     return change
-
-
-def one_less(members, body):
-    body["torus"]["harmonics"] -= 1
 
 
 OF_REFINED = {
@@ -103,21 +126,20 @@ OF_REFINED = {
     "no harmonic of a seed": (filled("harmonics", 7, kind="<i8"), "harmonic"),
     "no member with harmonics": (without_harmonics, "harmonics"),
     "no cosines": (lambda members, body: members.pop("cosines.npy"), "cosines"),
-    "another count": (one_less, "bytes where"),
-    "a count of none": (torus_entry(harmonics=0), "harmonics = 0"),
-    "a huge count": (torus_entry(harmonics=10**15), "bytes where"),
-    "a longer chain": (torus_entry(N=9), "bytes where"),
-    "no coupling": (torus_entry(alpha="0", beta="0"), "is damaged"),
-    "a seed outside": (torus_entry(seeds=[1, 8]), "seeds"),
-    "a seed less": (torus_entry(seeds=[1]), "is damaged"),
-    "a frequency less": (torus_entry(frequencies=["0.4"]), "do not fit the seeds"),
-    "a frequency of code": (torus_entry(frequencies=["exit()", "1"]), "is damaged"),
-    "a negative frequency": (torus_entry(frequencies=["-0.4", "1.1"]), "do not fit the seeds"),
-    "a phase more": (torus_entry(phases=["0", "0", "0"]), "do not fit the seeds"),
-    "a step of three numbers": (made_entry(steps=[["1", "1", "1"]]), "is damaged"),
-    "negative products": (made_entry(steps=[["1", "1", "1", -1]]), "is damaged"),
-    "another kind": (torus_entry(kind="other"), "a torus of kind"),
-    "neither series nor torus": (lambda members, body: body.update(torus=None), "a torus of kind None"),
+    "another count": (shape("harmonics", more=-1), "bytes where"),
+    "a count of none": (shape("harmonics", to=[0, 2]), "bytes where"),
+    "a huge count": (shape("harmonics", to=[10**15, 2]), "bytes where"),
+    "a longer chain": (chain_entry(N=9), "cosines"),
+    "no coupling": (chain_entry(alpha="0", beta="0"), "is damaged"),
+    "a seed outside": (torus_field(seeds={"tuple": [1, 8]}), "seeds"),
+    "a seed less": (torus_field(seeds={"tuple": [1]}), "is damaged"),
+    "a frequency less": (torus_field(frequencies=fractions("0.4")), "do not fit the seeds"),
+    "a frequency of code": (torus_field(frequencies=fractions("exit()", "1")), "is damaged"),
+    "a negative frequency": (torus_field(frequencies=fractions("-0.4", "1.1")), "do not fit the seeds"),
+    "an infinite phase": (torus_field(phases=by_seed("inf", "0")), "not finite"),
+    "a step of three numbers": (origin_field(steps=step(1, 1, 1)), "is damaged"),
+    "negative products": (origin_field(steps=step(1, 1, 1, -1)), "is damaged"),
+    "neither series nor torus": (lambda members, body: body.update(result=1), "int is no result"),
 }
 FORGED = {"HarmonicBalance": OF_ORBITS, "IterativeRefinement, breather": OF_DIGITS, "Newton": OF_REFINED}
 FORGED |= {"waves": OF_WAVES, "Newton of waves": OF_RINGS, "fixed": {"ends": (series_entry(ends="periodic"), "is damaged")}}
@@ -164,7 +186,7 @@ def test_numbers_of_many_digits_keep_every_bit(tmp_path):
     cosines = np.array([values, values[::-1]], dtype=object)
     harmonics = precise.harmonics[:2]
     torus = Torus(precise.chain, precise.seeds, precise.frequencies, harmonics, cosines, {3: mpmath.mpf("0.25")}, 40)
-    loaded = load(save(tmp_path / "torus", torus)).torus
+    loaded = load(save(tmp_path / "torus", torus))
     assert [x._mpf_ for x in loaded.cosines.flat] == [x._mpf_ for x in cosines.flat]
     assert loaded.phases == torus.phases
     assert str(loaded.cosines[1, 0]) == str(torus.cosines[1, 0]) == "0.1"
@@ -184,22 +206,22 @@ def test_what_is_of_another_potential_comes_back(potential, kind, tmp_path):
     chosen = {"frequencies": FREQUENCY, "digits": 30} if kind == "digits" else {}
     result = torus_of(potential) if kind == "torus" else lindstedt(Chain(8, potential=potential), (1,), order=2, **chosen)
     kept = load(save(tmp_path / "result", result))
-    assert same(kept.torus or kept.series, result)
+    assert same(kept, result)
 
 
 def test_the_potential_stands_in_the_file_and_an_older_reader_is_told(tmp_path):
     _, body = opened(save(tmp_path / "toda", torus_of("toda:1/3")))
-    assert body["series"]["potential"] == "toda:1/3"
-    assert not {"alpha", "beta"} & body["series"].keys()
+    assert body["parts"][0]["potential"] == "toda:1/3"
+    assert not {"alpha", "beta"} & body["parts"][0].keys()
     _, body = opened(save(tmp_path / "fpu", torus_of("poly:1/3")))
-    assert (body["series"]["alpha"], body["series"]["beta"]) == ("1/3", "0")
-    assert "potential" not in body["series"]
+    assert (body["parts"][0]["alpha"], body["parts"][0]["beta"]) == ("1/3", "0")
+    assert "potential" not in body["parts"][0]
 
 
 @pytest.mark.parametrize("written", ["spring:1", "toda:1,2", "toda:__import__('os')", "toda:0", ""])
 def test_an_unknown_potential_is_refused_by_name(written, tmp_path):
     file = save(tmp_path / "toda", torus_of("toda:1/2"))
-    forged(file, lambda members, body: body["series"].update(potential=written))
+    forged(file, lambda members, body: body["parts"][0].update(potential=written))
     with pytest.raises(BundleError, match=r"potential .*; update symfpu") as caught:
         load(file)
     assert repr(written)[:20] in str(caught.value)
@@ -227,7 +249,7 @@ def waves(order=6, **law):
 @pytest.mark.parametrize("order", [0, 1, 5])
 def test_series_come_back(law, order, tmp_path):
     series = waves(order, **law)
-    kept = load(save(tmp_path / "waves", series)).series
+    kept = load(save(tmp_path / "waves", series))
     assert same(kept, series)
     squares = [0.01, 0.02]
     assert np.array_equal(kept.frequency_terms(squares)[0], series.frequency_terms(squares)[0])
@@ -244,9 +266,9 @@ def newton():
 @pytest.mark.parametrize("made", [lambda: solve_amplitudes(waves(), phases={1: 0.3}), standing, newton])
 def test_tori_of_rings_come_back(made, tmp_path):
     torus = made()
-    bundle = load(save(tmp_path / "torus", torus))
-    assert same(bundle.torus, torus)
-    points = bundle.test_vectors
+    held = saved_file(save(tmp_path / "torus", torus))
+    assert same(held.result, torus)
+    points = held.test_vectors
     times = [float(point.t) for point in points]
     assert len(times) == 3
     assert torus.Q(times).tolist() == [list(map(complex, point.Q)) for point in points]
@@ -255,10 +277,10 @@ def test_tori_of_rings_come_back(made, tmp_path):
 
 def test_the_ends_stand_in_the_file_of_a_ring_alone(tmp_path):
     _, body = opened(save(tmp_path / "ring", waves()))
-    assert body["series"]["ends"] == "periodic"
+    assert body["parts"][0]["ends"] == "periodic"
     fixed = lindstedt(Chain(8, potential="toda:1/2"), (1,), ("0.392",), 2)
     _, body = opened(save(tmp_path / "fixed", fixed))
-    assert "ends" not in body["series"]
+    assert "ends" not in body["parts"][0]
 
 
 def test_frequencies_found_by_newtons_method_come_back_exactly(tmp_path):
@@ -271,4 +293,4 @@ def test_frequencies_found_by_newtons_method_come_back_exactly(tmp_path):
         origin=Newton((), ()),
         warnings=(),
     )
-    assert same(load(save(tmp_path / "odd", odd)).torus, odd)
+    assert same(load(save(tmp_path / "odd", odd)), odd)

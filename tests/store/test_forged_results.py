@@ -1,37 +1,12 @@
 """Files of results: what is damaged, forged or foreign is refused. That every result comes back: tests/test_results.py."""
 
-import tomllib
-from pathlib import Path
-
 import pytest
 
 import symfpu
-from symfpu import BundleError, Chain, InputError, integrate, load, prove_existence, save
-from symfpu.saved.classes import CLASSES, PARTS, RESULTS
-from tests.bundles.test_bundle import same
-from tests.bundles.test_bundle_damage import forged
-from tests.every_result import public_classes, result
-
-ROOT = Path(symfpu.__file__).parent.parent
-
-
-def test_the_list_has_no_class_that_is_not_needed():
-    assert len(CLASSES) == len(RESULTS) + len(PARTS)
-    assert set(RESULTS) <= public_classes()
-
-
-def test_a_class_is_named_with_the_module_that_defines_it():
-    assert {name: kind.__module__ for name, kind in CLASSES.items()} == {**RESULTS, **PARTS}
-    assert all(kind.__name__ == name for name, kind in CLASSES.items())
-
-
-def test_the_modules_of_the_classes_are_of_floors_below():
-    """They are named as text, which the contract of imports does not see."""
-    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
-    floors = [layer.split(" | ") for layer in contracts[0]["layers"]]
-    own = next(number for number, rooms in enumerate(floors) if "saved" in rooms)
-    below = {room for rooms in floors[own + 1 :] for room in rooms}
-    assert {module.split(".")[1] for module in (*RESULTS.values(), *PARTS.values())} <= below
+from symfpu import BundleError, Chain, InputError, integrate, load, prove_existence, save, saved_file
+from tests.every_result import result
+from tests.store.test_damage import forged
+from tests.store.test_saved_file import same
 
 
 @pytest.fixture(scope="module")
@@ -47,27 +22,32 @@ def file(orbit, tmp_path):
 
 
 def test_complex_modes_of_a_ring_and_its_scheme_come_back(orbit, file):
-    found = load(file).result
+    found = load(file)
     assert same(found, orbit)
     assert found.scheme is orbit.scheme
-    assert "Orbit(N=4, potential=toda(0.5), ends='periodic'" in repr(load(file))
+    assert "Orbit(N=4, potential=toda(0.5), ends='periodic'" in repr(found)
 
 
 def field(name, node):
     def change(members, body):
-        body["result"]["root"]["fields"][name] = node
+        body["result"]["fields"][name] = node
 
     return change
 
 
 def of_root(**changes):
-    return lambda members, body: body["result"]["root"].update(changes)
+    return lambda members, body: body["result"].update(changes)
 
 
 FORGERIES = {
-    "another class": of_root(**{"class": "Path"}),
-    "a class that is no result": of_root(**{"class": "Edges", "fields": {}}),
-    "a part for the whole": of_root(**{"class": "SweepCase"}),
+    "another class": of_root(**{"class": "pathlib:Path"}),
+    "a class of nobody": of_root(**{"class": "symfpu.dynamics.orbits:Nothing"}),
+    "a module that runs": of_root(**{"class": "symfpu.__main__:Orbit"}),
+    "a module that is not there": of_root(**{"class": "symfpu.nowhere:Orbit"}),
+    "a name without a module": of_root(**{"class": "Orbit"}),
+    "a class that is no result": of_root(**{"class": "symfpu.integrable.discriminant:Edges", "fields": {}}),
+    "a part for the whole": of_root(**{"class": "symfpu.proofs.sweeps:SweepCase"}),
+    "a result that has no file": of_root(**{"class": "symfpu.store.saved_file:SavedFile"}),
     "a field too many": field("nothing", 1),
     "a field of another type": field("step", "0.25"),
     "a chain of the other ends": field("chain", {"chain": {"N": 4, "potential": "toda:1/2"}, "ends": "periodic"}),
@@ -79,7 +59,7 @@ FORGERIES = {
     "a part that is not there": field("Q", {"part": 0}),
     "an unknown node": field("Q", {"eval": "1"}),
     "an empty node": field("Q", {}),
-    "no parts": lambda members, body: body["result"].pop("parts"),
+    "no parts": lambda members, body: body.pop("parts"),
 }
 
 
@@ -91,7 +71,7 @@ def test_forgeries_are_refused(case, file):
 
 @pytest.mark.parametrize("thing", [1, "torus", None, Chain(4, alpha=1), [result("Sweep")], result("Sweep").cases[0]])
 def test_what_is_no_result_is_refused(thing, tmp_path):
-    with pytest.raises(InputError, match="a series, a solution or another result"):
+    with pytest.raises(InputError, match="a result that symfpu computed"):
         save(tmp_path / "file", thing)
     assert not (tmp_path / "file").exists()
 
@@ -102,7 +82,7 @@ def test_a_proof_with_a_certificate_says_how_it_is_kept(tmp_path):
         save(tmp_path / "proof", proof)
 
 
-def test_a_bundle_says_what_of_it_is_kept(tmp_path):
-    bundle = load(save(tmp_path / "breather", symfpu.torus(Chain(3, alpha="0.3"), (1,), amplitudes={1: "0.1"})))
+def test_what_a_file_held_says_what_of_it_is_kept(tmp_path):
+    held = saved_file(save(tmp_path / "breather", symfpu.torus(Chain(3, alpha="0.3"), (1,), amplitudes={1: "0.1"})))
     with pytest.raises(InputError, match=r"pass what it holds, its \.result"):
-        save(tmp_path / "again", bundle)
+        save(tmp_path / "again", held)

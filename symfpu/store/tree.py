@@ -1,64 +1,124 @@
 """A result as a tree of JSON with arrays beside it, and back without executing anything.
 
 A node is null, a boolean, a whole number or text, or an object of one key that says what it is.
-Series and solutions inside keep the format that they have as files, each once. Which classes a
-tree may name, its writer and its reader are told.
+A series inside is a part with tables of its own, each once. The classes that a file may name are
+results, and of what they hold those that their annotations declare.
 """
 
 from __future__ import annotations
 
+import itertools
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
-from datetime import datetime
 from fractions import Fraction
 from functools import cache
+from importlib import import_module
 from math import prod
-from pathlib import Path
-from typing import Any, Union, get_args, get_origin, get_type_hints
+from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.bundles.bundle import document, load_with, parts_from, parts_of
-from symfpu.bundles.entries import chain_entries, chain_from, number, number_entry
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import SCHEMES
 from symfpu.errors import InputError
-from symfpu.files.archive import Archive, Json, write_document
+from symfpu.files.archive import Archive, Json
 from symfpu.numbers.arithmetic import ComplexWithDigits, NumberWithDigits, with_digits
 from symfpu.numbers.typed import fraction, fraction_text, integer
+from symfpu.results.result import Result
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.torus import Torus
+from symfpu.store.entries import chain_entries, chain_from, number, number_entry
+from symfpu.store.many_digits import INTEGERS, is_of_many_digits, packed, unpacked
+from symfpu.store.series import series_entries, series_from, series_tables
 
 Array = NDArray[Any]
-Classes = Mapping[str, type[Any]]
 
-OWN_FORMAT: tuple[type[Any], ...] = (LindstedtSeries, Torus)
 DTYPES = ("<f8", "<c16", "<i8", "|b1")
 SCALARS: dict[str, type[Any]] = {"float64": np.float64, "complex128": np.complex128}
 PLAIN = (bool, int, str, type(None))
+CONTAINERS = ("tuple", "list", "dict")
+OWN = "symfpu."  # modules whose classes a file may name, beside those that are imported
+
+
+def class_name(kind: type) -> str:
+    """A class as files name it."""
+    return f"{kind.__module__}:{kind.__qualname__}"
+
+
+def class_named(name: str, hint: Any) -> type[Any]:
+    """The class of a name in a file, of a type that annotations allow there.
+
+    ValueError for any other. A module of ours is imported; those of others must be, before.
+    """
+    module, _, own = name.partition(":")
+    known = {class_name(kind): kind for kind in _all_results()}
+    kind = known.get(name)
+    if kind is None and module.startswith(OWN) and "__" not in name and "." not in own:
+        kind = getattr(import_module(module), own, None)
+    if not isinstance(kind, type) or not _is_declared(kind) or not allows(hint, kind):
+        raise ValueError(f"no result is of the class {name!r:.60}")
+    return kind
+
+
+def _is_declared(kind: type) -> bool:
+    """Whether a class declares its fields: a dataclass or a named tuple."""
+    return is_dataclass(kind) or (issubclass(kind, tuple) and hasattr(kind, "_fields"))
+
+
+def _all_results(kind: type = Result) -> set[type]:
+    """All results that are imported."""
+    return {kind}.union(*map(_all_results, kind.__subclasses__()))
+
+
+def allows(hint: Any, kind: type) -> bool:
+    """Whether a value of a class may stand where an annotation is.
+
+    >>> allows(Chain | None, Chain), allows(tuple[Chain, ...], Chain), allows(Any, Chain)
+    (True, True, False)
+    """
+    origin = get_origin(hint)
+    if isinstance(hint, TypeVar):
+        return allows(hint.__bound__, kind)
+    if hint is Any:
+        return issubclass(kind, Result)
+    if origin is None:
+        return isinstance(hint, type) and issubclass(kind, hint)
+    if isinstance(origin, type) and issubclass(kind, origin):
+        return True
+    return any(allows(inside, kind) for inside in get_args(hint) if inside is not ...)
+
+
+def fields_of(kind: type[Any]) -> dict[str, bool]:
+    """The fields by which a class is made, and whether each must be given."""
+    if not is_dataclass(kind):
+        names: tuple[str, ...] = kind._fields
+        return {name: name not in kind._field_defaults for name in names}
+    own = [f for f in fields(kind) if f.init]
+    return {f.name: f.default is MISSING and f.default_factory is MISSING for f in own}
 
 
 class Writer:
-    """Nodes of values; arrays gathers what is beside them, parts the series and solutions."""
+    """Nodes of values; arrays gathers what is beside them, parts the series."""
 
-    def __init__(self, classes: Classes) -> None:
-        self._classes = classes
+    def __init__(self) -> None:
         self.arrays: dict[str, Array] = {}
         self.parts: list[Json] = []
-        self._places: dict[int, int] = {}  # of series and solutions, by identity
+        self._places: dict[int, int] = {}  # of series, by identity
+        self._field = "array"
 
     def node(self, value: Any) -> Any:
         """The node of a value; InputError for what a file does not keep."""
         if type(value) in PLAIN:
             return value
+        if isinstance(value, tuple) and _is_declared(type(value)):
+            return self._instance(value)
         for kind, write in self._writers():
             if isinstance(value, kind):
                 return write(value)
-        if is_dataclass(value) and type(value).__name__ in self._classes:
+        if _is_declared(type(value)):
             return self._instance(value)
         allowed = "numbers, arrays, chains, series, solutions and results"
         advice = "save what it holds, or its table: to_frame()"
@@ -66,7 +126,7 @@ class Writer:
 
     def _writers(self) -> tuple[tuple[Any, Callable[[Any], Json]], ...]:
         return (
-            (OWN_FORMAT, self._kept),
+            (LindstedtSeries, self._series),
             (np.floating | np.complexfloating, self._scalar),
             (float, lambda x: {"float": repr(x)}),
             (complex, lambda z: {"complex": [repr(z.real), repr(z.imag)]}),
@@ -100,6 +160,8 @@ class Writer:
         return {"scalar": name, "parts": [repr(z.real), repr(z.imag)]}
 
     def _array(self, values: Array) -> Json:
+        if values.dtype == object and is_of_many_digits(values):
+            return self._many_digits(values)
         if values.dtype == object:
             inside = [self.node(item) for item in values.flat]
             return {"objects": inside, "shape": list(values.shape)}
@@ -107,7 +169,7 @@ class Writer:
         if dtype not in DTYPES:
             allowed = f"arrays of {', '.join(DTYPES)}"
             raise InputError("result", f"an array of {dtype}", allowed, "convert it")
-        name = f"array{len(self.arrays)}"
+        name = self._array_name()
         self.arrays[name] = np.ascontiguousarray(values, dtype=dtype).reshape(-1)
         return {"array": name, "dtype": dtype, "shape": list(values.shape)}
 
@@ -117,20 +179,39 @@ class Writer:
             raise InputError("scheme", scheme.name, allowed, "integrate with one of them")
         return {"scheme": scheme.name}
 
-    def _kept(self, value: Any) -> Json:
-        if id(value) not in self._places:
-            entries, members = parts_of(value)
+    def _many_digits(self, values: Array) -> Json:
+        words, exponents = packed(values)
+        node = self._array(words) | {"exponents": self._array(exponents)["array"]}
+        digits = getattr(values.flat[0], "digits", None)
+        return {
+            "mpf array": node.pop("array"),
+            **node,
+            "of": list(values.shape),
+            "digits": digits,
+        }
+
+    def _series(self, series: LindstedtSeries) -> Json:
+        if id(series) not in self._places:
             place = len(self.parts)
-            self.parts.append(entries)
+            members, layout = series_tables(series)
+            self.parts.append(series_entries(series) | layout)
             named = {f"part{place}.{name}": array for name, array in members.items()}
             self.arrays |= named
-            self._places[id(value)] = place
-        return {"part": self._places[id(value)]}
+            self._places[id(series)] = place
+        return {"part": self._places[id(series)]}
 
     def _instance(self, value: Any) -> Json:
-        own = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
-        inside = {name: self.node(item) for name, item in own.items()}
-        return {"class": type(value).__name__, "fields": inside}
+        inside = {}
+        for name in fields_of(type(value)):
+            self._field = name
+            inside[name] = self.node(getattr(value, name))
+        return {"class": class_name(type(value)), "fields": inside}
+
+    def _array_name(self) -> str:
+        """That of the field that holds it, with a number where another one has it."""
+        numbered = (f"{self._field}{n}" for n in itertools.count(2))
+        names = itertools.chain([self._field], numbered)
+        return next(name for name in names if name not in self.arrays)
 
 
 class PartOfArchive:
@@ -155,15 +236,19 @@ class PartOfArchive:
 class Reader:
     """Values of nodes; ValueError, TypeError or KeyError where they are none."""
 
-    def __init__(self, archive: Archive, parts: list[Json], classes: Classes) -> None:
-        self._archive, self._parts, self._classes = archive, parts, classes
-        self._made: dict[int, Any] = {}
+    def __init__(self, archive: Archive, parts: list[Json]) -> None:
+        self._archive, self._parts = archive, parts
+        self._made: dict[int, LindstedtSeries] = {}
 
-    def value(self, node: Any) -> Any:
-        """The value of a node."""
+    def value(self, node: Any, hint: Any = Any) -> Any:
+        """The value of a node. hint : the annotation of its place."""
         if type(node) in PLAIN:
             return node
         kind, *_ = node
+        if kind in CONTAINERS:
+            return self._container(kind, node[kind], hint)
+        if kind == "class":
+            return self._instance(node, hint)
         if kind not in self._readers:
             raise ValueError(f"no value is of the kind {kind!r:.40}")
         return self._readers[kind](node)
@@ -177,16 +262,20 @@ class Reader:
             "fraction": lambda node: fraction(node["fraction"]),
             "mpf": self._many_digits,
             "mpc": self._many_digits,
-            "tuple": lambda node: tuple(map(self.value, node["tuple"])),
-            "list": lambda node: list(map(self.value, node["list"])),
-            "dict": lambda node: {self.value(k): self.value(v) for k, v in node["dict"]},
             "array": self._array,
             "objects": self._objects,
             "chain": lambda node: chain_from(node["chain"], node["ends"]),
             "scheme": lambda node: SCHEMES[node["scheme"]],
             "part": self._part,
-            "class": self._instance,
+            "mpf array": self._array_of_many_digits,
         }
+
+    def _container(self, kind: str, inside: list[Any], hint: Any) -> Any:
+        """Of what is in it the annotation of the whole says what it may be."""
+        if kind == "dict":
+            return {self.value(k, hint): self.value(v, hint) for k, v in inside}
+        values = [self.value(item, hint) for item in inside]
+        return tuple(values) if kind == "tuple" else values
 
     def _scalar(self, node: Json) -> Any:
         kind = SCALARS[node["scalar"]]
@@ -214,26 +303,32 @@ class Reader:
             values[i] = self.value(item)
         return values.reshape(_shape(node))
 
-    def _part(self, node: Json) -> Any:
+    def _array_of_many_digits(self, node: Json) -> Array:
+        shape = tuple(integer(n, "shape", 0) for n in node["of"])
+        count, words = _shape(node)
+        if count != prod(shape) or not words:
+            raise ValueError(f"{count} numbers of {words} words for the shape {shape}")
+        flat = self._archive.array(str(node["mpf array"]), INTEGERS, count * words)
+        exponents = self._archive.array(str(node["exponents"]), INTEGERS, count)
+        values = unpacked(flat, exponents, shape)
+        if node["digits"] is None:
+            return values
+        return with_digits(values, integer(node["digits"], "digits", 1))
+
+    def _part(self, node: Json) -> LindstedtSeries:
         place = integer(node["part"], "part", 0)
         if place not in self._made:
             inside: Any = PartOfArchive(self._archive, place)
-            self._made[place] = parts_from(inside, self._parts[place])
+            self._made[place] = series_from(inside, self._parts[place])
         return self._made[place]
 
-    def _instance(self, node: Json) -> Any:
-        if node["class"] not in self._classes:
-            raise ValueError(f"no result is of the class {node['class']!r:.40}")
-        kind: Any = self._classes[node["class"]]
-        values = {name: self.value(item) for name, item in node["fields"].items()}
-        own = {f.name: f for f in fields(kind) if f.init}
-        due = {name for name, f in own.items() if f.default is MISSING}
-        due -= {name for name, f in own.items() if f.default_factory is not MISSING}
-        if not due <= set(values) <= set(own):
-            raise ValueError(
-                f"the fields {sorted(values)} are not those of {kind.__name__}"
-            )
-        hints = types_of(kind)
+    def _instance(self, node: Json, hint: Any) -> Any:
+        kind: Any = class_named(node["class"], hint)
+        due, hints = fields_of(kind), types_of(kind)
+        found = node["fields"]
+        if not {name for name, needed in due.items() if needed} <= set(found) <= set(due):
+            raise ValueError(f"the fields {sorted(found)} are not those of {kind.__name__}")
+        values = {name: self.value(item, hints[name]) for name, item in found.items()}
         for name, value in values.items():
             if not fits(value, hints[name]):
                 given = type(value).__name__
@@ -264,6 +359,8 @@ def fits(value: Any, hint: Any) -> bool:
     (True, False, True)
     """
     origin, inside = get_origin(hint), get_args(hint)
+    if isinstance(hint, TypeVar):
+        return fits(value, hint.__bound__)
     if hint is Any:
         return True
     if origin in (Union, types.UnionType):
@@ -293,30 +390,3 @@ def _fits_container(value: Any, origin: Any, inside: tuple[Any, ...]) -> bool:
         key, item = inside
         return all(fits(k, key) and fits(v, item) for k, v in value.items())
     return all(fits(item, inside[0]) for item in value)
-
-
-def write_tree(
-    path: Path,
-    result: Any,
-    classes: Classes,
-    *,
-    verdict: Json | None = None,
-    command: str | None = None,
-    created: datetime | None = None,
-) -> None:
-    """A result as one file, with notes that were checked."""
-    writer = Writer(classes)
-    root = writer.node(result)
-    held = {"root": root, "parts": writer.parts}
-    body = document(verdict, command, created) | {"result": held}
-    write_document(path, body, writer.arrays)
-
-
-def read_tree(path: Path | str, classes: Classes) -> Any:
-    """What `write_tree` wrote. Raises BundleError and OSError as `load` does."""
-    return load_with(path, lambda archive, held: value_of(archive, held, classes)).result
-
-
-def value_of(archive: Archive, held: Json, classes: Classes) -> Any:
-    """The result of a document; ValueError and the like where it is none."""
-    return Reader(archive, held["parts"], classes).value(held["root"])

@@ -10,8 +10,8 @@ import symfpu
 from symfpu import BundleError, Chain, alignment_indices, family, integrate, lindstedt, load, refine, save, solve_amplitudes
 from symfpu.files.archive import SCHEMA
 from symfpu.proofs.check_propagation import verify
-from tests.bundles.test_bundle_damage import forged
 from tests.cli.running import run
+from tests.store.test_damage import forged
 
 DATA = Path(__file__).parents[1] / "data" / "version-0.1"
 ALPHA = Chain(8, alpha="0.33")

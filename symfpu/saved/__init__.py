@@ -1,1 +1,0 @@
-"""Every result as a file, and back."""
