@@ -118,7 +118,9 @@ class Newton(Origin):
             raise ValueError("standing waves, or many digits, by Newton's method")
         for unit in np.eye(len(torus.seeds), dtype=np.int64):
             if np.count_nonzero((torus.harmonics == unit).all(axis=1)) != 1:
-                raise ValueError("a seed whose own harmonic is not there, or is there twice")
+                raise ValueError(
+                    "a seed whose own harmonic is not there, or is there twice"
+                )
         if any(step.krylov < 0 for step in self.steps):
             raise ValueError("a negative number of products")
 

@@ -8,8 +8,9 @@ results, and of what they hold those that their annotations declare.
 from __future__ import annotations
 
 import itertools
+import sys
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from fractions import Fraction
 from functools import cache
@@ -53,42 +54,38 @@ def class_named(name: str, hint: Any) -> type[Any]:
 
     ValueError for any other. A module of ours is imported; those of others must be, before.
     """
-    module, _, own = name.partition(":")
-    known = {class_name(kind): kind for kind in _all_results()}
-    kind = known.get(name)
-    if kind is None and module.startswith(OWN) and "__" not in name and "." not in own:
-        kind = getattr(import_module(module), own, None)
-    if not isinstance(kind, type) or not _is_declared(kind) or not allows(hint, kind):
-        raise ValueError(f"no result is of the class {name!r:.60}")
-    return kind
+    module, _, _ = name.partition(":")
+    if module.startswith(OWN) and "__" not in module:
+        import_module(module)
+    for base in _declared_in(hint):
+        for kind in _with_subclasses(base):
+            if class_name(kind) == name:
+                return kind
+    raise ValueError(f"no result is of the class {name!r:.60}")
 
 
-def _is_declared(kind: type) -> bool:
-    """Whether a class declares its fields: a dataclass or a named tuple."""
-    return is_dataclass(kind) or (issubclass(kind, tuple) and hasattr(kind, "_fields"))
-
-
-def _all_results(kind: type = Result) -> set[type]:
-    """All results that are imported."""
-    return {kind}.union(*map(_all_results, kind.__subclasses__()))
-
-
-def allows(hint: Any, kind: type) -> bool:
-    """Whether a value of a class may stand where an annotation is.
-
-    >>> allows(Chain | None, Chain), allows(tuple[Chain, ...], Chain), allows(Any, Chain)
-    (True, True, False)
-    """
-    origin = get_origin(hint)
-    if isinstance(hint, TypeVar):
-        return allows(hint.__bound__, kind)
+def _declared_in(hint: Any) -> Iterator[type[Any]]:
+    """The classes in an annotation that declare their fields; any result for Any."""
     if hint is Any:
-        return issubclass(kind, Result)
-    if origin is None:
-        return isinstance(hint, type) and issubclass(kind, hint)
-    if isinstance(origin, type) and issubclass(kind, origin):
-        return True
-    return any(allows(inside, kind) for inside in get_args(hint) if inside is not ...)
+        yield Result
+    elif isinstance(hint, TypeVar):
+        yield from _declared_in(hint.__bound__)
+    elif isinstance(origin := get_origin(hint) or hint, type) and _declares(origin):
+        yield origin
+    else:
+        for inside in get_args(hint):
+            yield from _declared_in(inside)
+
+
+def _declares(kind: type) -> bool:
+    """Whether a class declares its fields: a result, a dataclass or a named tuple."""
+    named = issubclass(kind, tuple) and hasattr(kind, "_fields")
+    return named or is_dataclass(kind) or issubclass(kind, Result)
+
+
+def _with_subclasses(kind: type[Any]) -> set[type[Any]]:
+    """A class and those that inherit from it, as far as they are imported."""
+    return {kind}.union(*map(_with_subclasses, kind.__subclasses__()))
 
 
 def fields_of(kind: type[Any]) -> dict[str, bool]:
@@ -113,12 +110,12 @@ class Writer:
         """The node of a value; InputError for what a file does not keep."""
         if type(value) in PLAIN:
             return value
-        if isinstance(value, tuple) and _is_declared(type(value)):
+        if isinstance(value, tuple) and _declares(type(value)):
             return self._instance(value)
         for kind, write in self._writers():
             if isinstance(value, kind):
                 return write(value)
-        if _is_declared(type(value)):
+        if _declares(type(value)):
             return self._instance(value)
         allowed = "numbers, arrays, chains, series, solutions and results"
         advice = "save what it holds, or its table: to_frame()"
@@ -201,11 +198,17 @@ class Writer:
         return {"part": self._places[id(series)]}
 
     def _instance(self, value: Any) -> Json:
+        kind = type(value)
+        if getattr(sys.modules[kind.__module__], kind.__qualname__, None) is not kind:
+            advice = "define the class at the top of a module; tori: in_doubles()"
+            raise InputError(
+                "result", kind.__name__, "of a class that is found again", advice
+            )
         inside = {}
-        for name in fields_of(type(value)):
+        for name in fields_of(kind):
             self._field = name
             inside[name] = self.node(getattr(value, name))
-        return {"class": class_name(type(value)), "fields": inside}
+        return {"class": class_name(kind), "fields": inside}
 
     def _array_name(self) -> str:
         """That of the field that holds it, with a number where another one has it."""

@@ -24,9 +24,9 @@ def test_by_frequency(capsys, tmp_path):
     assert found["residual"] < PROMISED_RESIDUAL
     assert (found["seeds"], found["digits"], found["warnings"]) == ([1], None, [])
     assert "multipliers" not in found
-    kept = load(tmp_path / "orbit")
-    assert type(kept.torus.origin) is HarmonicBalance
-    assert (kept.torus.cosines == orbit.cosines).all()
+    kept = symfpu.saved_file(tmp_path / "orbit")
+    assert type(kept.result.origin) is HarmonicBalance
+    assert (kept.result.cosines == orbit.cosines).all()
     assert kept.provenance["command"].startswith("symfpu breather -N 8")
 
 

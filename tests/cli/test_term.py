@@ -6,7 +6,7 @@ from shlex import split
 import pytest
 import symengine as se
 
-from symfpu import Chain, closed_form, lindstedt, load
+from symfpu import Chain, closed_form, lindstedt, saved_file
 from tests.cli.running import answer, shown
 
 ALL = split("term -N N --alpha 1 --seeds 1,N-1 --order 2")
@@ -61,8 +61,8 @@ def test_one_chain_and_numbers(capsys):
 def test_the_series_is_kept(capsys, tmp_path):
     file = tmp_path / "all.symfpu"
     shown(capsys, *ALL, "-q", "1", "-o", file)
-    kept = load(file)
-    assert repr(kept) == repr(lindstedt(EVERY, (1, "N-1"), order=2))
+    kept = saved_file(file)
+    assert repr(kept.result) == repr(lindstedt(EVERY, (1, "N-1"), order=2))
     assert kept.provenance["command"].startswith("symfpu term -N N")
     assert "for N >= 7" in shown(capsys, "show", file)
 
