@@ -26,6 +26,7 @@ from symfpu.results.field import Field
 from symfpu.results.numbers import number_text
 from symfpu.results.result import Tabled
 from symfpu.results.table import Column, Table, joined
+from symfpu.results.text_tables import text_table
 from symfpu.series.memory import series_bytes
 from symfpu.sweeps.rows import SweepRow, SweepRows
 from symfpu.sweeps.sweep import read_sweep, sweep
@@ -97,6 +98,10 @@ class AtlasBorder:
         return str(found)
 
 
+BORDER_HEAD = ("N", "packet", "order", "border", "H", "H/N", "what ends it")
+LAW_HEAD = ("packet", "border", "H goes as", "N", "between neighbours")
+
+
 @public
 @dataclass(frozen=True)
 class Atlas(Tabled):
@@ -121,6 +126,20 @@ class Atlas(Tabled):
     def _answer(self) -> str:
         found = sum(border.energy is not None for border in self.borders)
         return counted(found, "border")
+
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """The borders, the laws where there are three lengths, and what failed, as tables."""
+        borders = [_border_row(border) for border in self.borders]
+        if borders:
+            yield from text_table(BORDER_HEAD, borders)
+        laws = self.laws.items()
+        rows = [_law_row(packet, border, law) for (_, packet, border), law in laws]
+        if rows:
+            yield ""
+            yield from text_table(LAW_HEAD, rows)
+        for row in self.rows.failures:
+            N, packet = row.case["chain"].get("N"), row.case["packet"]
+            yield f"N = {N}, packet {packet}: {row.failure}"
 
     def _fields(self) -> Iterator[Field]:
         """What all columns share, every border, the power laws, and the columns that failed."""
@@ -470,3 +489,39 @@ def _reach(reach: float) -> float:
     if value < 1:
         raise InputError("reach", reach, "a number of at least 1", "take 3")
     return value
+
+
+def _border_row(border: AtlasBorder) -> list[str]:
+    known = border.energy is not None
+    H = float(border.energy or 0.0)
+    return [
+        str(border.N),
+        border.packet,
+        str(border.order),
+        border.border,
+        f"{H:.4g}" if known else "none",
+        f"{H / border.N:.4g}" if known else "",
+        _ended(border),
+    ]
+
+
+def _ended(border: AtlasBorder) -> str:
+    """The reason in words; else the term of the series, or the rate of growth."""
+    details = border.details
+    words = [border.reason] if border.reason else []
+    if details.get("mode") is not None:
+        nu = ",".join(map(str, details["harmonic"]))
+        words.append(f"mode {details['mode']}, harmonic {nu}")
+    if details.get("growth") is not None:
+        words.append(f"growth {details['growth']:.3g}")
+    if "time" in details and details.get("between"):
+        lowest, highest = (math.inf if H is None else H for H in details["between"])
+        words.append(f"chaos by t = {details['time']:g}, {lowest:.3g} .. {highest:.3g}")
+    return "; ".join(words)
+
+
+def _law_row(packet: str, border: str, law: BorderLaw) -> list[str]:
+    lengths = ",".join(map(str, law.lengths))
+    between = ", ".join(f"{x:.2f}" for x in law.local)
+    power = f"N^({law.exponent:.3f} +- {law.error:.2g})"
+    return [packet, border, power, lengths, between]

@@ -134,6 +134,22 @@ class ExistenceProof(Tabled):
     digits: int
     body: dict[str, Any] = field(repr=False)
 
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """The theorem, the intervals, and the bounds."""
+        given = f"of each such {self.fixed}" if self.half_width else f"of this {self.fixed}"
+        yield f"{self.chain.label}, seed {self.seed}, {self.condition}: proved"
+        yield (
+            f"  a {self.kind} {given} exists within {above(self.radius, 2)} "
+            f"of the computed one, the only one within {below(self.unique, 2)}"
+        )
+        yield f"  in the norm {self.norm}, nu = {self.nu};"
+        yield f"  analytic for |Im omega t| < log {self.nu}"
+        yield from (f"  {interval}" for interval in self.intervals)
+        yield (
+            f"  Y = {self.residual:.2g}, Z0 + Z1 = {self.linear:.3g}, "
+            f"Z2 = {self.curvature:.3g}; {self.harmonics} harmonics, block of {self.block}"
+        )
+
     def _fields(self) -> Iterator[Field]:
         """A and H are the middles of intervals."""
         digits, seed = self.digits + 3, str(self.seed)

@@ -71,6 +71,13 @@ def torus_proof_fields(proof: TorusProof) -> Iterator[Field]:
     yield Field("digits", proof.digits, "digits")
 
 
+def torus_words(proof: TorusProof) -> str:
+    """Which torus a theorem is about, in words."""
+    seeds = ", ".join(map(str, proof.seeds))
+    harmonics = f"{proof.harmonics} harmonics, {proof.digits} digits"
+    return f"{proof.chain.label}, seeds {seeds}, {harmonics}"
+
+
 def bound_text(x: Any) -> str:
     """A proved bound, a fraction or a number of mpmath, in fifteen digits."""
     number = mpmath.mpf(x.numerator) / x.denominator if hasattr(x, "numerator") else x
@@ -126,6 +133,19 @@ class ResidualProof(Tabled):
     harmonics: int
     digits: int
     body: Body = field(repr=False)
+
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """The theorem."""
+        bound, relative = (mpmath.nstr(x, 3) for x in (self.bound, self.relative))
+        yield f"{torus_words(self)}: proved"
+        below = f"below {bound} of every particle at all angles"
+        yield f"  the residual of the equations of motion is {below},"
+        yield f"  {relative} of the largest acceleration"
+        if self.energy is None:
+            yield "  of its energy nothing is proved: a harmonic of it has nu.omega = 0"
+        else:
+            radius = above(self.energy_radius, 3)
+            yield f"  H is within {radius} of {self.energy} at all angles"
 
     def _fields(self) -> Iterator[Field]:
         """Bounds are texts, as they may be below all doubles."""

@@ -110,6 +110,9 @@ class Gap:
     between: tuple[str, str]
 
 
+MOST_GAPS = 5  # that readers see
+
+
 @public
 @dataclass(frozen=True, eq=False, kw_only=True)
 class StabilityProof(Tabled):
@@ -134,6 +137,31 @@ class StabilityProof(Tabled):
     exponents: tuple[ProvedExponent, ...]
     gaps: tuple[Gap, ...]
     body: dict[str, Any] = field(repr=False)
+
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """The theorem, the smallest gaps or the growth, and the bounds."""
+        orbit = self.existence
+        word = "linearly stable" if self.stable else "linearly unstable"
+        given = f"omega = {decimal(orbit.frequency)}"
+        if orbit.fixed != "frequency":
+            given = f"{orbit.condition}, {given} +- {above(orbit.frequency_radius, 1)}"
+        yield f"{orbit.chain.label}, seed {orbit.seed}, {given}: {word}, proved"
+        yield f"  {self.theorem}"
+        for gap in self.gaps[:MOST_GAPS]:
+            left, right = gap.between
+            span = f"{below(gap.least, 6)} .. {above(gap.most, 6)} omega"
+            yield f"  gap {span}: {left}; {right}"
+        for one in self.exponents:
+            if not one.circle:
+                least, most = one.growth
+                yield (
+                    f"  sigma = {one.sigma:.10g} within {above(one.radius, 2)}: "
+                    f"grows with a rate of {below(least, 9)} .. {above(most, 9)}"
+                )
+        count = counted(len(self.exponents), "exponent")
+        largest = max((e.block for e in self.exponents), default=0)
+        linear = max((e.linear for e in self.exponents), default=0.0)
+        yield f"  {count}; Z up to {linear:.3g}, blocks up to {largest}"
 
     def _fields(self) -> Iterator[Field]:
         orbit = self.existence

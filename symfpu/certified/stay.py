@@ -13,6 +13,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import mpmath
+
 from symfpu.certified.frame import FRAME_BITS, RATE_BITS, Direction, directions_of
 from symfpu.certified.growth import Growth, rounded_up
 from symfpu.certified.norms import Norms, norms, weights_of
@@ -28,6 +30,7 @@ from symfpu.certified.residual import (
     shown,
     torus_proof_fields,
     torus_text,
+    torus_words,
     write_certificate,
 )
 from symfpu.certified.rounded_torus import RoundedTorus, residual_of, rounded_torus
@@ -130,6 +133,18 @@ class StayProof(Tabled):
     digits: int
     body: Body = field(repr=False)
 
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """The theorem, and what it follows from."""
+        bounds = (self.residual, self.frame, self.curvature, self.room)
+        residual, frame, curvature, room = (f"{x:.3g}" for x in bounds)
+        yield f"{torus_words(self)}: proved"
+        yield f"  {self._claim};"
+        yield f"  velocities within {mpmath.nstr(self.momentum, 3)}; {self.most}"
+        yield (
+            f"  residual {residual}, frame {frame}, curvature {curvature}, room {room}; "
+            f"residual of every particle below {mpmath.nstr(self.bound, 3)}"
+        )
+
     def _fields(self) -> Iterator[Field]:
         """With the time, the distances and what they follow from."""
         yield from torus_proof_fields(self)
@@ -148,7 +163,7 @@ class StayProof(Tabled):
 
     def __repr__(self) -> str:
         which = torus_text(self.chain, self.seeds, self.frequencies)
-        return f"StayProof({which}, {self.digits} digits: {self.text}; {self.most})"
+        return f"StayProof({which}, {self.digits} digits: {self._claim}; {self.most})"
 
     @property
     def omega(self) -> dict[int, Fraction]:
@@ -156,7 +171,7 @@ class StayProof(Tabled):
         return dict(zip(self.seeds, self.frequencies, strict=True))
 
     @property
-    def text(self) -> str:
+    def _claim(self) -> str:
         """The theorem without its torus."""
         size, apart = above(self.distance, 3), above(max(self.drift.values()), 3)
         return (
@@ -168,7 +183,7 @@ class StayProof(Tabled):
     def theorem(self) -> str:
         """What is proved, in one sentence."""
         which = torus_text(self.chain, self.seeds, self.frequencies)
-        return f"{which}: {self.text}"
+        return f"{which}: {self._claim}"
 
     @property
     def most(self) -> str:

@@ -31,7 +31,6 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.writing import output_file
-from symfpu.reports.borders import atlas_text
 from symfpu.sweeps.this_process import ThisProcess
 
 SHORTEST = "2"  # a chain of any law
@@ -137,7 +136,7 @@ def borders_of_tori(
     if as_json:
         print_json(found.record())
     else:
-        say("\n".join(atlas_text(found)))
+        say(found.text())
         say_kept(saved)
         say_drawn(picture)
     raise typer.Exit(1 if found.rows.failures else 0)

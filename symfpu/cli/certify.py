@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -27,9 +27,6 @@ from symfpu.cli.terminal import (
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.reports.certified import residual_proof_text, stay_text
-from symfpu.reports.existence import existence_text
-from symfpu.reports.stability_proof import stability_text
 from symfpu.store.saved_file import load
 from symfpu.tori.torus import Torus
 
@@ -68,12 +65,6 @@ ResidualOption = Annotated[
 ]
 
 Proof = ExistenceProof | StabilityProof | ResidualProof | StayProof
-TEXTS: dict[type, Callable[[Any], str]] = {
-    ExistenceProof: existence_text,
-    StabilityProof: stability_text,
-    ResidualProof: residual_proof_text,
-    StayProof: stay_text,
-}
 
 
 @app.command(epilog="Example: symfpu certify breather.symfpu --stability -o proof.json")
@@ -165,6 +156,6 @@ def _show(proof: Proof, target: Path | None, as_json: bool) -> None:
     if as_json:
         print_json(proof.record())
         return
-    say(TEXTS[type(proof)](proof))
+    say(proof.text())
     if target is not None:
         print(f"certificate: {target}")

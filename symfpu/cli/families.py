@@ -49,7 +49,7 @@ from symfpu.numbers.counted import counted
 from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
-from symfpu.reports.family import family_table, family_text
+from symfpu.reports.family import family_table
 from symfpu.reports.solution import refined_text, solution_record, solution_text
 from symfpu.store.saved_file import load, save
 from symfpu.tori.energy import Energy
@@ -263,7 +263,7 @@ def follow_family(
     if as_json:
         print_json(found.record())
     else:
-        say("\n".join(family_text(found)))
+        say(found.text())
         if folder is not None:
             counts = f"{counted(len(found.members), 'member')}, {counted(len(pictures), 'picture')}"
             print(f"written: {folder}: family.csv, {counts}")

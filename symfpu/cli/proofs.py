@@ -43,8 +43,8 @@ from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
 from symfpu.proofs.checkers import verified_certificate
 from symfpu.proofs.reading import CertificateError
-from symfpu.proofs.sweeps import sweep_propagation
-from symfpu.reports.proofs import certificate_record, sweep_markdown
+from symfpu.proofs.sweeps import sweep_markdown, sweep_propagation
+from symfpu.reports.proofs import certificate_record
 
 ALLOWED_CERTIFICATE = "one written by symfpu prove or certify, unaltered"
 MODELS = ("alpha", "beta", "alpha+beta")

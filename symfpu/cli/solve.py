@@ -39,7 +39,6 @@ from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
 from symfpu.refinement.newton import Newton
-from symfpu.reports.series import assessment_text
 from symfpu.reports.solution import refined_text, solution_record, solution_text
 from symfpu.solutions.series import series_torus
 from symfpu.solutions.torus import torus
@@ -195,7 +194,7 @@ def solve(
     print_solution(found, record)
     if "energy_shares" in record:
         say(f"energy shared      {_shares_text(wish)}")
-    say(assessment_text(assessment, width_of(sys.stdout)))
+    say(assessment.text(width_of(sys.stdout)))
     if assessment.word != "converged":
         say("without --order: the torus itself, by Newton's method")
     if file:

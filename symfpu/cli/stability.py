@@ -34,8 +34,6 @@ from symfpu.normal.torus import LENGTH
 from symfpu.reports.normal import (
     BySeries,
     by_series,
-    normal_family_text,
-    normal_text,
     series_records,
     series_text,
 )
@@ -117,10 +115,7 @@ def stability(
     if as_json:
         print_json(found.record() | series_records(records))
         return
-    text = (
-        normal_text(found) if isinstance(found, NormalModes) else normal_family_text(found)
-    )
-    say("\n".join([text, *series_text(records)]))
+    say("\n".join([found.text(), *series_text(records)]))
     say_kept(saved)
     say_drawn(picture)
 

@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
-from symfpu.cli.terminal import FileArgument, JsonOption, path_named, print_json, say, warn
+from symfpu.cli.terminal import (
+    FileArgument,
+    JsonOption,
+    path_named,
+    print_json,
+    say,
+    warn,
+    width_of,
+)
 from symfpu.cli.verbs import app
 from symfpu.numbers.arithmetic import text
 from symfpu.refinement.newton import Newton
@@ -67,7 +76,7 @@ def _print_result(result: Any) -> None:
     elif isinstance(result, Torus):
         print_solution(result, result.record())
     else:
-        say(result)
+        say(result.text(width_of(sys.stdout)))
 
 
 def print_solution(solution: Torus, record: dict[str, Any]) -> None:

@@ -63,6 +63,10 @@ class NotInFamily(SymfpuError):
         )
 
 
+SHOWN_EVENTS = 12
+SHOWN_MEMBERS = 8  # besides the first; the last one is among them
+
+
 @dataclass(frozen=True, eq=False)
 class Family(Gridded):
     """Tori of growing energy with one ratio of amplitudes or mode energies.
@@ -96,6 +100,22 @@ class Family(Gridded):
 
     def _answer(self) -> str:
         return f"it {self.ending}"
+
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """Some members, the first and the last among them, and the strongest events."""
+        yield repr(self)
+        count = len(self.members)
+        places = {round(i * (count - 1) / SHOWN_MEMBERS) for i in range(SHOWN_MEMBERS + 1)}
+        if len(places) < count:
+            shown = f"{len(places)} of {count} members shown"
+            yield f"  {shown}; all with --json, or in -o FOLDER"
+        yield from (f"  {self.members[k]!r}" for k in sorted(places))
+        events = sorted(self.events, key=_weight, reverse=True)[:SHOWN_EVENTS]
+        yield from (f"  {event!r}" for event in sorted(events, key=lambda e: e.after))
+        yield from (f"  {event!r}" for event in self.normal_events)
+        weaker = len(self.events) - SHOWN_EVENTS
+        if weaker > 0:
+            yield f"  ... and {weaker} weaker resonances"
 
     def _fields(self) -> Iterator[Field]:
         yield from chain_fields(self.chain)
@@ -249,3 +269,7 @@ def _between(
         *ratio_conditions(found.seeds, ratio, energies=energies),
     ]
     return refined_torus(extrapolated(first, second, part - 1), conditions)
+
+
+def _weight(event: Event) -> float:
+    return abs(event.value) if event.kind == "resonance" else float("inf")

@@ -61,6 +61,20 @@ class NormalFamily(Gridded):
     parts: tuple[float, ...] = field(repr=False)
     events: tuple[NormalEvent, ...]
 
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """A line a member, and the events."""
+        torus = self.members[0].torus
+        seeds = ",".join(map(str, torus.seeds))
+        count = f"{len(self.members)} tori, {self.verdict}"
+        yield f"{torus.chain.label}, seeds {seeds}: {count}"
+        for one in self.members:
+            amplitudes = self._amplitudes(one).items()
+            where = ", ".join(f"A_{q}={a:.8g}" for q, a in amplitudes)
+            yield f"  {where}: {frequencies_of(one, {})!r}"
+        yield from (f"  {event!r}" for event in self.events)
+        if not self.events:
+            yield "  no events"
+
     def _fields(self) -> Iterator[Field]:
         torus = self.members[0].torus
         yield from chain_fields(torus.chain)

@@ -216,6 +216,21 @@ class NormalModes(Gridded):
     undecided: tuple[int, ...] = field(default=(), repr=False)
     missing: dict[int, str] = field(default_factory=dict, repr=False)
 
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """The verdict, a line a mode, and the nearest resonances."""
+        chain, seeds = self.torus.chain, ",".join(map(str, self.torus.seeds))
+        linear = dict(zip(chain.mode_numbers, chain.frequencies(), strict=True))
+        yield f"{chain.label}, seeds {seeds}: {self.verdict}"
+        yield "  mode  normal frequency                   shift        kind, residual"
+        for mode in self.modes:
+            shift = complex(mode.sigma).real - linear[mode.mode]
+            kind = f"{mode.kind}, {float(mode.residual):.0e}"
+            yield f"  {mode.mode:4d}  {mode.text:33}  {shift:+.4e}  {kind}"
+        yield from (f"  {q:4d}  {why}" for q, why in self.missing.items())
+        if self.resonances:
+            yield "nearest resonances:"
+        yield from (f"  {one!r}" for one in self.resonances[:NEAREST])
+
     def _fields(self) -> Iterator[Field]:
         """Real frequencies are texts, complex ones [re, im]."""
         torus, digits = self.torus, self.digits

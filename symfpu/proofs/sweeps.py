@@ -33,9 +33,11 @@ from symfpu.results.attributes import attributes
 from symfpu.results.field import Field
 from symfpu.results.result import Tabled, table_fields
 from symfpu.results.table import Columns, Table, joined
+from symfpu.results.text_tables import markdown_table
 from symfpu.sweeps.rows import SweepFailure, SweepRow
 from symfpu.sweeps.sweep import SweepStopped, sweep
 
+VERDICTS = ("proved", "refuted", "undecided")
 MOST_CASES = 10**7  # of one sweep, which has all of them in memory
 
 Key = tuple[int, tuple[int, ...]]  # N and the seeds
@@ -252,3 +254,44 @@ def _case(record: Mapping[str, Any]) -> SweepCase:
         exceptions,
         record["corrected_rule_holds"],
     )
+
+
+def sweep_markdown(sweep: Sweep) -> str:
+    """A sweep of the propagation rule.
+
+    How often it holds by N and number of seeds, and every exception.
+    """
+    proved = sum(case.verdict == "proved" for case in sweep.cases)
+    holds = sum(case.corrected_rule_holds for case in sweep.cases)
+    counts = f"{counted(len(sweep.cases), 'seed set')}. The proposition holds in {proved}; "
+    counts += f"the corrected rule predicts the actual sets in {holds}."
+    parts = [f"## {sweep.model} model, order {sweep.order}", counts]
+    parts.append(markdown_table(["N", "seeds", "sets", *VERDICTS], _count_rows(sweep)))
+    exceptions = [_exception_row(case) for case in sweep.exceptions]
+    if exceptions:
+        parts.append("Exceptions (mode: predicted order -> actual order):")
+        parts.append(markdown_table(["N", "seeds", "exceptions"], exceptions))
+    return "\n\n".join(parts) + "\n"
+
+
+def _count_rows(sweep: Sweep) -> list[list[str]]:
+    """Verdicts by N and number of seeds."""
+    groups: dict[tuple[int, int], list[str]] = {}
+    for case in sweep.cases:
+        size = (case.N, len(case.seeds))
+        groups.setdefault(size, []).append(case.verdict)
+    rows = []
+    for (N, s), verdicts in groups.items():
+        counts = [verdicts.count(verdict) for verdict in VERDICTS]
+        row = [N, s, len(verdicts), *counts]
+        rows.append([str(number) for number in row])
+    return rows
+
+
+def _exception_row(case: SweepCase) -> list[str]:
+    seeds = ", ".join(map(str, case.seeds))
+    moved = [
+        f"{q}: {predicted} -> {'later' if actual is None else actual}"
+        for q, predicted, actual in case.exceptions
+    ]
+    return [str(case.N), seeds, "; ".join(moved)]

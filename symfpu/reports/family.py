@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 from symfpu.families.family import Family
-from symfpu.families.members import Event
 
 SHOWN_EVENTS = 12
 SHOWN_MEMBERS = 8  # besides the first; the last one is among them
@@ -39,26 +37,3 @@ def family_table(found: Family) -> list[list[str]]:
             row += [f"{x:.15g}" for w in known for x in (w.real, abs(w.imag))]
         table.append(row)
     return table
-
-
-def family_text(found: Family) -> Iterator[str]:
-    """A family for a reader, in lines."""
-    yield repr(found)
-    count = len(found.members)
-    places = {round(i * (count - 1) / SHOWN_MEMBERS) for i in range(SHOWN_MEMBERS + 1)}
-    if len(places) < count:
-        yield f"  {len(places)} of {count} members shown; all with --json, or in -o FOLDER"
-    for k in sorted(places):
-        yield f"  {found.members[k]!r}"
-    events = sorted(found.events, key=_weight, reverse=True)[:SHOWN_EVENTS]
-    for event in sorted(events, key=lambda e: e.after):
-        yield f"  {event!r}"
-    for normal_event in found.normal_events:
-        yield f"  {normal_event!r}"
-    weaker = len(found.events) - SHOWN_EVENTS
-    if weaker > 0:
-        yield f"  ... and {weaker} weaker resonances"
-
-
-def _weight(event: Event) -> float:
-    return abs(event.value) if event.kind == "resonance" else float("inf")

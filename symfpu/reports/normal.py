@@ -6,26 +6,11 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from symfpu.errors import ResonantDivisor
-from symfpu.families.normal_family import NormalFamily
-from symfpu.normal.frequencies import frequencies_of
-from symfpu.normal.modes import NoNormalModes, NormalMode, NormalModes
+from symfpu.normal.modes import NoNormalModes, NormalMode
 from symfpu.normal.phantom import NormalFrequencySeries
 from symfpu.tori.torus import Torus
 
 SHOWN_RESONANCES = 10
-
-
-def normal_family_text(found: NormalFamily) -> str:
-    """A line of tori for a reader: a line a member, and the events."""
-    chain = found.members[0].torus.chain.label
-    seeds = ",".join(map(str, found.members[0].torus.seeds))
-    lines = [f"{chain}, seeds {seeds}: {len(found.members)} tori, {found.verdict}"]
-    for one in found.members:
-        amplitudes = one.torus.amplitudes.items()
-        where = ", ".join(f"A_{q}={float(a):.8g}" for q, a in amplitudes)
-        lines.append(f"  {where}: {frequencies_of(one, {})!r}")
-    lines += [f"  {event!r}" for event in found.events] or ["  no events"]
-    return "\n".join(lines)
 
 
 class BySeries(NamedTuple):
@@ -94,22 +79,3 @@ def series_text(found: Sequence[BySeries]) -> list[str]:
 def _closed_shift(series: NormalFrequencySeries) -> str | None:
     """The lowest terms as a formula; None on a ring, which has none."""
     return None if series.chain.periodic else str(series.closed_shift())
-
-
-def normal_text(found: NormalModes) -> str:
-    """Verdict, a line a mode, and the nearest resonances."""
-    chain = found.torus.chain.label
-    seeds = ",".join(map(str, found.torus.seeds))
-    lines = [f"{chain}, seeds {seeds}: {found.verdict}"]
-    chain_modes = found.torus.chain.mode_numbers
-    linear = dict(zip(chain_modes, found.torus.chain.frequencies(), strict=True))
-    lines.append("  mode  normal frequency                   shift        kind, residual")
-    for mode in found.modes:
-        shift = complex(mode.sigma).real - linear[mode.mode]
-        kind = f"{mode.kind}, {float(mode.residual):.0e}"
-        lines.append(f"  {mode.mode:4d}  {mode.text:33}  {shift:+.4e}  {kind}")
-    lines += [f"  {q:4d}  {why}" for q, why in found.missing.items()]
-    if found.resonances:
-        lines.append("nearest resonances:")
-    lines += [f"  {one!r}" for one in found.resonances[:SHOWN_RESONANCES]]
-    return "\n".join(lines)

@@ -53,6 +53,24 @@ class Result(ABC):
         """The verdict in a line."""
         return str(getattr(self, "verdict", ""))
 
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """Its answer for a reader, in lines. width : columns of the terminal, if it is one."""
+        yield repr(self)
+
+    def text(self, width: int | None = None) -> str:
+        """Its answer in lines, as the command line prints it.
+
+        width : columns into which tables are folded; default as wide as they are.
+
+        >>> from symfpu import Chain, family
+        >>> print(family(Chain(N=8, alpha="0.3"), (1,), "0.001", from_energy="0.0005").text())
+        Family(N=8, alpha=0.3, seeds=1, 3 members, H = 0.0005 .. 0.001, ...)
+          Member(torus, H=0.0005, ...)
+          Member(torus, H=...)
+          Member(torus, H=0.001, ...)
+        """
+        return "\n".join(self._lines(width))
+
     def _require_whole(self) -> None:
         """ValueError where its parts do not fit together: of what a file held."""
         repr(self)

@@ -28,6 +28,7 @@ from symfpu.results.attributes import Attributes, attributes
 from symfpu.results.field import Field, chain_fields
 from symfpu.results.result import Tabled
 from symfpu.results.table import Column, Table, joined
+from symfpu.results.text_tables import GAP, text_table
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders, steps_of_frequencies
@@ -94,6 +95,9 @@ def _short(values: Iterable[float]) -> list[float | None]:
     return [short(x) for x in values]
 
 
+SHOWN_ORDERS = 10  # of the evidence, about
+
+
 @public
 @dataclass(frozen=True, eq=False)
 class Assessment(Tabled):
@@ -158,6 +162,20 @@ class Assessment(Tabled):
         if self.word == "asymptotic":
             return f"asymptotic, best at order {self.best_order}"
         return self.word
+
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """The evidence: reasons, radii, and a line for some of the orders."""
+        yield from (f"  {reason}" for reason in self.reasons)
+        poles = "no pole" if math.isinf(self.pole_radius) else f"{self.pole_radius:.3g}"
+        radii = f"{self.radius:.3g} by ratio of terms, "
+        radii += f"{poles} by Pade poles of the frequencies (a hint)"
+        yield f"  radius of convergence in units of mu: {radii}"
+        seed = next(iter(self.sums))
+        head = ["order", f"A_{seed}(k)", "dA(k)", f"S_1, S_2 of Q_{seed}"]
+        head += ["coarse residual", "energy error", "largest term: mode, harmonic, divisor"]
+        rows = [_order_line(self, seed, k) for k in _shown_orders(self)]
+        inner_width = None if width is None else width - len(GAP)
+        yield from (GAP + line for line in text_table(head, rows, inner_width))
 
     def _fields(self) -> Iterator[Field]:
         if self.chain is not None:
@@ -541,3 +559,28 @@ def _word(evidence: Assessment, step: int, floor: float) -> tuple[str, tuple[str
     if shrinking:
         return "undecided", (STILL_FALLING,)
     return "asymptotic", ()
+
+
+def _shown_orders(found: Assessment) -> list[int]:
+    """At most about a dozen orders: the first, the best, the last, and some between."""
+    step = max(1, found.order // SHOWN_ORDERS)
+    evenly = range(0, found.order + 1, step)
+    return sorted({*evenly, found.best_order, found.order})
+
+
+def _order_line(found: Assessment, seed: int, k: int) -> list[str]:
+    first, second = (sums[k] for sums in found.sums[seed])
+    position = list(found.sums).index(seed)
+    amplitude = change = largest = ""
+    if k in found.amplitudes:
+        amplitude = f"{float(found.amplitudes[k][position]):.10g}"
+    if k in found.differences:
+        change = f"{max(found.differences[k]):.1e}"
+    term = next((t for t in found.terms if t.order == k), None)
+    if term is not None:
+        harmonic = ",".join(map(str, term.harmonic))
+        largest = f"{term.size:.1e}: {term.mode}, ({harmonic}), {term.divisor:.1e}"
+    sums = f"{first:.1e}, {second:.1e}"
+    residual = f"{found.residuals[k]:.1e}"
+    energy_error = f"{found.energy_errors[k]:.1e}"
+    return [str(k), amplitude, change, sums, residual, energy_error, largest]

@@ -23,7 +23,6 @@ from symfpu.certified.layout import layout_of
 from symfpu.certified.rounded_orbit import rounded_orbit
 from symfpu.proofs import check_existence
 from symfpu.proofs.reading import dyadic
-from symfpu.reports.existence import existence_text
 from tests.breather import breather_of
 from tests.proofs.certificate_files import bounds_of
 from tests.tolerances import (
@@ -211,7 +210,7 @@ def test_the_theorem_names_its_norm(name, border, tmp_path):
     assert claim.bordered == ("v_0 |m| + " in found.norm) == border
     assert found.norm.endswith("sum v nu^n |c_q[n]|")
     assert found.norm in found.theorem
-    assert found.norm in existence_text(found)
+    assert found.norm in found.text()
 
 
 @pytest.mark.parametrize("name", [*EACH, *(pytest.param(name, marks=[pytest.mark.long] * (name == "wave")) for name in WAVES)])

@@ -10,7 +10,7 @@ import pytest
 
 from symfpu import SweepIncomplete, TooLarge, sweep_propagation
 from symfpu.proofs import sweeps
-from symfpu.reports.proofs import sweep_markdown
+from symfpu.proofs.sweeps import sweep_markdown
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ import pytest
 
 import symfpu
 from symfpu import Chain, InputError, cite, family
-from symfpu.reports.family import SHOWN_MEMBERS, family_text
+from symfpu.families.family import SHOWN_MEMBERS
 from symfpu.results.text_tables import markdown_table
 from tests.every_result import public_classes, result
 from tests.tolerances import THIRTY_DIGITS
@@ -78,7 +78,7 @@ def found():
 @pytest.mark.parametrize("times", [1, 2, 3, 5])
 def test_a_text_that_leaves_members_out_says_so(found, times):
     long = replace(found, members=found.members * times)
-    lines = list(family_text(long))
+    lines = long.text().splitlines()
     shown = [line for line in lines if line.startswith("  Member(")]
     assert shown[0].strip() == repr(long.members[0])
     assert shown[-1].strip() == repr(long.members[-1])

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from symfpu import Chain, assess, lindstedt, solve_amplitudes
-from symfpu.reports.series import assessment_text
 from symfpu.reports.solution import solution_record
 
 
@@ -33,13 +32,13 @@ def test_a_record_survives_json_without_losing_a_digit(torus):
 def test_the_evidence_has_a_line_for_every_order_of_a_short_series(torus):
     """With the numbers of the assessment."""
     assessment = assess(torus.origin.series, torus)
-    *_, two, _, four = assessment_text(assessment).splitlines()
+    *_, two, _, four = assessment.text().splitlines()
     term = assessment.terms[4]
     shown = (f"{assessment.amplitudes[4][0]:.10g}", f"{assessment.residuals[4]:.1e}", f"{assessment.energy_errors[4]:.1e}")
     assert four.split()[0] == "4"
     assert all(number in four for number in (*shown, f"{term.size:.1e}", f"{term.divisor:.1e}"))
     assert f"{max(assessment.differences[2]):.1e}" in two
-    endless = assessment_text(replace(assessment, growth=0.0, pole_radius=float("inf")))
+    endless = replace(assessment, growth=0.0, pole_radius=float("inf")).text()
     assert "inf by ratio of terms, no pole" in endless
 
 
@@ -48,7 +47,7 @@ def test_the_evidence_of_a_long_series_is_short_and_has_its_best_order(torus):
     values = np.full(243, 0.5)
     sums = dict.fromkeys((1, 2), (values, values))
     long = replace(assessment, order=242, best_order=157, residuals=values, energy_errors=values, sums=sums)
-    orders = [line.split()[0] for line in assessment_text(long).splitlines()[len(assessment.reasons) + 2 :]]
+    orders = [line.split()[0] for line in long.text().splitlines()[len(assessment.reasons) + 2 :]]
     assert {"0", "157", "242"} <= set(orders)
     assert len(orders) < 15
 
