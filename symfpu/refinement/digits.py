@@ -44,7 +44,12 @@ from symfpu.refinement.kronecker import Box, Integers, KroneckerForce
 from symfpu.refinement.lattice import Floats, Ints, canonical_signs, places_of
 from symfpu.refinement.linear_system import Jacobian
 from symfpu.refinement.prescribed import Prescribed
-from symfpu.refinement.refinement_file import Keep, Reached, RefinementFile, no_file
+from symfpu.refinement.refinement_file import (
+    Checkpoint,
+    RefinementFile,
+    Save,
+    no_checkpoint,
+)
 from symfpu.results.field import Field
 from symfpu.results.numbers import number_text
 from symfpu.tori.torus import Origin, Torus
@@ -128,7 +133,7 @@ class Guess(NamedTuple):
         """Those that are held, or those of the torus."""
         return self.prescribed.held_frequencies or tuple(self.torus.frequencies)
 
-    def moved(self, to: Reached) -> Guess:
+    def moved(self, to: Checkpoint) -> Guess:
         """The same problem from what refinement has reached."""
         found = tuple(Fraction(int(w), 1 << to.bits) for w in to.omega)
         torus = Torus(
@@ -177,11 +182,11 @@ def torus_to_digits(
 
 
 def precise_torus(
-    guess: Guess, digits: int, report: Progress, keep: Keep = no_file
+    guess: Guess, digits: int, report: Progress, save: Save = no_checkpoint
 ) -> Torus[IterativeRefinement]:
     """The torus near the guess with so many digits; raises Failure, and InputError for too many.
 
-    keep : called with what is reached after every step.
+    save : called with what is reached after every step.
 
     Half of the digits first: from their fall-off the harmonics of all are known better, and fewer
     steps need all of them. Then harmonics are added until none that is left out has an error
@@ -193,11 +198,11 @@ def precise_torus(
     _require_room(guess, digits)
     for fewer in stages[:-1]:
         with mpmath.workdps(fewer + CARRIED_DIGITS):
-            problem = TorusProblem(guess, _fitted(guess, fewer), fewer, report, keep)
+            problem = TorusProblem(guess, _fitted(guess, fewer), fewer, report, save)
             converge(problem, fewer, report)
             guess = problem.guess(fewer)
     with mpmath.workdps(digits + CARRIED_DIGITS):
-        start = TorusProblem(guess, _fitted(guess, digits), digits, report, keep)
+        start = TorusProblem(guess, _fitted(guess, digits), digits, report, save)
         problem, left = refined(start, digits, report)
         return problem.result(left)
 
@@ -248,10 +253,10 @@ class TorusProblem(TruncatedProblem):
     """
 
     def __init__(
-        self, guess: Guess, harmonics: Ints, digits: int, report: Progress, keep: Keep
+        self, guess: Guess, harmonics: Ints, digits: int, report: Progress, save: Save
     ) -> None:
         self.start, self.harmonics = guess, harmonics
-        self.digits, self.report, self.keep = digits, report, keep
+        self.digits, self.report, self.save = digits, report, save
         self.steps = guess.steps
         torus = guess.torus
         self.equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
@@ -325,7 +330,7 @@ class TorusProblem(TruncatedProblem):
 
     def after_step(self, digits: float) -> None:
         self._require_near()
-        self.keep(self._reached(math.floor(max(1, min(self.digits, digits)))))
+        self.save(self._checkpoint(math.floor(max(1, min(self.digits, digits)))))
 
     def _require_near(self) -> None:
         """Failure where the amplitude of a seed has left that of the guess."""
@@ -336,8 +341,8 @@ class TorusProblem(TruncatedProblem):
                 reason = f"A_{q} goes from {before:.3g} to {now:.3g}"
                 raise Failure(f"iterative refinement leads elsewhere: {reason}")
 
-    def _reached(self, digits: int) -> Reached:
-        return Reached(
+    def _checkpoint(self, digits: int) -> Checkpoint:
+        return Checkpoint(
             self.harmonics,
             self.coefficients,
             self.frequencies,
@@ -348,14 +353,14 @@ class TorusProblem(TruncatedProblem):
 
     def guess(self, digits: int) -> Guess:
         """What was reached, as a torus of so many digits to go on from with other harmonics."""
-        return self.start.moved(self._reached(digits))
+        return self.start.moved(self._checkpoint(digits))
 
     def extended(self, harmonics: Ints) -> TorusProblem:
         """With those, too, that a fit of what was reached expects."""
         guess = self.guess(self.digits)
         more = self.harmonics, _fitted(guess, self.digits), harmonics
         every = np.unique(np.concatenate(more), axis=0)
-        return TorusProblem(guess, every, self.digits, self.report, self.keep)
+        return TorusProblem(guess, every, self.digits, self.report, self.save)
 
     def truncation(self) -> Truncation:
         """At all harmonics of a box a quarter larger; its residual is the bound of the result."""

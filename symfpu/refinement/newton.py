@@ -163,10 +163,14 @@ def force_precision(equation: InvarianceEquation, cosines: Floats, shifts: Float
     return np.float64 if enough else np.longdouble
 
 
-def _imbalance(
-    equation: InvarianceEquation, cosines: Floats, shifts: Floats, precision: type
-) -> tuple[Floats, float]:
-    """Of the equations of all unknowns, (U,), and the same relative to the largest acceleration.
+def _left(
+    equation: InvarianceEquation,
+    conditions: Sequence[Condition],
+    cosines: Floats,
+    shifts: Floats,
+    precision: type,
+) -> tuple[Floats, float, float]:
+    """What all equations and conditions leave, (U + s,), and the sizes of both, relative.
 
     Divisors times coefficients in long doubles: near a torus the force cancels them.
     """
@@ -174,7 +178,10 @@ def _imbalance(
     left = (equation.divisors(shifts) * cosines - force)[equation.mask].astype(float)
     rates = equation.rates(shifts).astype(float)
     accelerations = rates**2 @ np.abs(cosines).astype(float)
-    return left, float(np.abs(left).max() / accelerations.max())
+    residual = float(np.abs(left).max() / accelerations.max())
+    given = [condition.value(equation, cosines, shifts) for condition in conditions]
+    values = np.array(given).astype(float)
+    return np.concatenate([left, values]), residual, float(np.abs(values).max())
 
 
 # iterates that run away are refused by their size
@@ -205,28 +212,23 @@ def newton(
         return Iterate(best[1], best[2], tuple(steps), reason, at_rounding)
 
     for _ in range(ITERATIONS):
-        imbalance, residual = _imbalance(equation, cosines, shifts, precision)
-        given = [condition.value(equation, cosines, shifts) for condition in conditions]
-        values = np.array(given).astype(float)
-        violation = float(np.abs(values).max())
-        if not np.isfinite(residual + violation):
-            return failed("the equations or conditions leave the range of numbers")
+        errors, residual, violation = _left(
+            equation, conditions, cosines, shifts, precision
+        )
         error = residual + violation
+        if not np.isfinite(error):
+            return failed("the equations or conditions leave the range of numbers")
         gained = error < FALL * best[0]
         if error < best[0]:
             best = (error, cosines, shifts)
         if left > INEXACT and not gained:
             return failed(unsolved_words(products, left), unsolved=True)
-        right = -np.concatenate([imbalance, values])
         try:
             moved, turned, products, left = _step(
-                equation, conditions, cosines, shifts, right, tolerances.krylov
+                equation, conditions, cosines, shifts, errors, tolerances.krylov
             )
-        except (np.linalg.LinAlgError, ValueError) as failure:
-            reason = f"the matrix of Newton's method is singular ({failure})"
-            return failed(reason, unsolved=True)
-        if not left < 1:
-            return failed(unsolved_words(products, left), unsolved=True)
+        except np.linalg.LinAlgError as failure:
+            return failed(str(failure), unsolved=True)
         cosines, shifts = cosines + moved, shifts + turned
         relative = float(np.abs(moved).max() / np.abs(cosines).max())
         steps.append(NewtonStep(residual, relative, violation, products))
@@ -248,16 +250,22 @@ def _step(
     conditions: Sequence[Condition],
     cosines: Floats,
     shifts: Floats,
-    right: Floats,
+    errors: Floats,
     accuracy: float,
 ) -> tuple[Floats, Floats, int, float]:
-    """Changes of coefficients (H, C) and shifts (s,), products, and what is left of the right.
+    """Changes of coefficients (H, C) and shifts (s,), products, and what is left of the errors.
 
-    By a Jacobian that is not kept: it is large.
+    By a Jacobian that is not kept: it is large. LinAlgError with the reason where there is none.
     """
-    jacobian = Jacobian(equation, conditions, cosines, shifts)
-    found = jacobian.approximate(right, accuracy)
-    return *jacobian.parts(found.change), found.products, found.left
+    try:
+        jacobian = Jacobian(equation, conditions, cosines, shifts)
+        change, products, left = jacobian.approximate(-errors, accuracy)
+    except (np.linalg.LinAlgError, ValueError) as failure:
+        reason = f"the matrix of Newton's method is singular ({failure})"
+        raise np.linalg.LinAlgError(reason) from failure
+    if not left < 1:
+        raise np.linalg.LinAlgError(unsolved_words(products, left))
+    return *jacobian.parts(change), products, left
 
 
 def _sizes(equation: InvarianceEquation, cosines: Floats) -> dict[str, float]:

@@ -31,7 +31,7 @@ Integers = NDArray[np.object_]
 WORD = 32
 
 
-class Reached(NamedTuple):
+class Checkpoint(NamedTuple):
     """harmonics (H, s); coefficients (H, C) and omega (s,) times 2^bits; digits; steps made."""
 
     harmonics: Ints
@@ -42,10 +42,10 @@ class Reached(NamedTuple):
     steps: int
 
 
-Keep = Callable[[Reached], None]
+Save = Callable[[Checkpoint], None]
 
 
-def no_file(reached: Reached) -> None:
+def no_checkpoint(reached: Checkpoint) -> None:
     """Of a run without a file."""
 
 
@@ -72,7 +72,7 @@ class RefinementFile:
             "steps": digits,
         }
 
-    def read(self) -> Reached | None:
+    def read(self) -> Checkpoint | None:
         """What the file holds, None where there is none; raises InputError and BundleError."""
         found = read_checkpoint(self.path, self.parameters, TORUS_DIGITS)
         if found is None:
@@ -84,7 +84,7 @@ class RefinementFile:
             problem = f"is damaged ({type(error).__name__} {error})"
             raise BundleError(self.path, problem, ADVICE) from None
 
-    def _reached(self, steps: int, arrays: dict[str, Any]) -> Reached:
+    def _reached(self, steps: int, arrays: dict[str, Any]) -> Checkpoint:
         harmonics = arrays["harmonics"].astype(np.int64)
         coefficients, omega = whole(arrays["coefficients"]), whole(arrays["omega"])
         shapes = harmonics.shape, coefficients.shape, omega.shape
@@ -92,9 +92,9 @@ class RefinementFile:
         if shapes != ((count, s), (count, count_columns(self.chain)), (s,)):
             raise ValueError(f"arrays of the shapes {shapes}")
         bits, digits = (int(x) for x in arrays["bits and digits"])
-        return Reached(harmonics, coefficients, omega, bits, digits, steps)
+        return Checkpoint(harmonics, coefficients, omega, bits, digits, steps)
 
-    def write(self, reached: Reached) -> None:
+    def write(self, reached: Checkpoint) -> None:
         """Replaces the file whole."""
         arrays = {
             "harmonics": reached.harmonics.astype(float),
