@@ -36,7 +36,7 @@ from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.iterative_refinement import Failure, Problem, converge
 from symfpu.refinement.kronecker import Integers
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.refinement.linear_system import Jacobian
+from symfpu.refinement.linear_system import Jacobian, NewtonState
 from symfpu.tori.torus import Torus
 from symfpu.tori.unfolding import folded
 
@@ -139,7 +139,7 @@ def jacobian_of_amplitudes(
     """Newton's matrix at a torus in long doubles where all amplitudes are held."""
     held = enumerate(seed_amplitudes(equation, cosines))
     conditions = [amplitude(i, A, len(torus.seeds)) for i, A in held]
-    return Jacobian(equation, conditions, cosines, shifts_of(torus))
+    return Jacobian(NewtonState(equation, conditions, cosines, shifts_of(torus)))
 
 
 @contextmanager

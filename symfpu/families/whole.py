@@ -18,7 +18,7 @@ from symfpu.breathers.curve import unlike
 from symfpu.refinement.conditions import Condition
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.lattice import Floats, Ints
-from symfpu.refinement.linear_system import Jacobian
+from symfpu.refinement.linear_system import Jacobian, NewtonState
 from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import NoTorus
 from symfpu.tori.torus import Torus
@@ -49,7 +49,8 @@ def whole(torus: Torus[Newton], conditions: Sequence[Condition]) -> Whole:
     cosines, shifts = table.astype(np.longdouble), shifts_of(torus)
     try:
         with np.errstate(divide="ignore", invalid="ignore"):
-            changes, _ = Jacobian(equation, conditions, cosines, shifts).responses(1)
+            state = NewtonState(equation, conditions, cosines, shifts)
+            changes, _ = Jacobian(state).responses(1)
     except (np.linalg.LinAlgError, ValueError) as failure:
         reason = f"the tangent of the family is not determined ({failure})"
         raise NoTorus(reason, torus, torus.residual()) from failure

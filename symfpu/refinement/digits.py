@@ -42,7 +42,7 @@ from symfpu.refinement.iterative_refinement import (
 )
 from symfpu.refinement.kronecker import Box, Integers, KroneckerForce
 from symfpu.refinement.lattice import Floats, Ints, canonical_signs, places_of
-from symfpu.refinement.linear_system import Jacobian
+from symfpu.refinement.linear_system import Jacobian, NewtonState
 from symfpu.refinement.prescribed import Prescribed
 from symfpu.refinement.refinement_file import (
     Checkpoint,
@@ -298,7 +298,7 @@ class TorusProblem(TruncatedProblem):
         conditions = guess.prescribed.conditions()
         table = doubles.astype(np.longdouble)
         try:
-            self.jacobian = Jacobian(self.equation, conditions, table, shifts)
+            self.jacobian = Jacobian(NewtonState(self.equation, conditions, table, shifts))
         except (np.linalg.LinAlgError, ValueError) as failure:
             raise Failure(f"the Jacobian is singular ({failure})") from failure
 

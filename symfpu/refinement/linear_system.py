@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symfpu.refinement.conditions import Condition
-from symfpu.refinement.invariance import InvarianceEquation
+from symfpu.refinement.invariance import InvarianceEquation, Slopes
 from symfpu.refinement.lattice import Floats, Ints
 
 LARGEST_BLOCK, SMALLEST_BLOCK = 4000, 300  # unknowns that are solved for directly
@@ -28,38 +28,37 @@ CORRECTIONS = 5  # of the solution for a derivative
 ROWS = 256  # of the block, to which what is outside is added at once
 
 
+class NewtonState(NamedTuple):
+    """Where Newton's matrix is taken: cosines (H, C) and shifts (s,) in long doubles."""
+
+    equation: InvarianceEquation
+    conditions: Sequence[Condition]
+    cosines: Floats
+    shifts: Floats
+
+
 class LinearSystem:
     """One linear system of Newton's method.
 
     Vectors hold the masked coefficients, then the shifts.
     """
 
-    def __init__(
-        self,
-        equation: InvarianceEquation,
-        conditions: Sequence[Condition],
-        cosines: Floats,
-        shifts: Floats,
-    ) -> None:
+    def __init__(self, state: NewtonState) -> None:
+        equation, conditions, cosines, shifts = state
         self.equation, self.mask, self.s = equation, equation.mask, len(shifts)
         self.diagonal = equation.divisors(shifts).astype(float)
         self.slopes = equation.slopes(cosines)
         self.cosines = cosines.astype(float)
         self.rates = equation.rates(shifts).astype(float)
-        self._set_conditions(conditions, cosines, shifts)
+        gradients = [x.gradient(equation, cosines, shifts) for x in conditions]
+        self._set_conditions(gradients)
 
-    def _set_conditions(
-        self, conditions: Sequence[Condition], cosines: Floats, shifts: Floats
-    ) -> None:
+    def _set_conditions(self, gradients: Sequence[Slopes]) -> None:
         from scipy import sparse
 
-        by_cosine, by_shift = [], []
-        for condition in conditions:
-            of_cosines, of_shifts = condition.gradient(self.equation, cosines, shifts)
-            by_cosine.append(sparse.csr_matrix(of_cosines[self.mask]))
-            by_shift.append(of_shifts)
+        by_cosine = [sparse.csr_matrix(slope[self.mask]) for slope, _ in gradients]
         self.by_cosine = sparse.vstack(by_cosine, format="csr")
-        self.corner = np.array(by_shift)
+        self.corner = np.array([by_shift for _, by_shift in gradients])
 
     def along_shifts(self, change: Floats) -> Floats:
         """What a change of the shifts adds to the equations; shape (unknowns,)."""
@@ -188,16 +187,10 @@ class Jacobian:
     it was, whatever the size of the residual.
     """
 
-    def __init__(
-        self,
-        equation: InvarianceEquation,
-        conditions: Sequence[Condition],
-        cosines: Floats,
-        shifts: Floats,
-    ) -> None:
-        self._system = LinearSystem(equation, conditions, cosines, shifts)
+    def __init__(self, state: NewtonState) -> None:
+        self._system = LinearSystem(state)
         self._preconditioner = Preconditioner(self._system)
-        self.size = int(equation.mask.sum()) + len(shifts)
+        self.size = int(self._system.mask.sum()) + self._system.s
 
     def approximate(self, right: Floats, accuracy: float) -> Solution:
         """The solution for a right-hand side, as far as it is found."""

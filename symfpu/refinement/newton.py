@@ -16,13 +16,14 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
-from symfpu.refinement.conditions import Condition
+from symfpu.refinement.conditions import Condition, seed_amplitudes
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats
 from symfpu.refinement.linear_system import (
     ACCURACY,
     INEXACT,
     Jacobian,
+    NewtonState,
     unsolved_words,
 )
 from symfpu.refinement.resonances import NearResonance
@@ -163,17 +164,12 @@ def force_precision(equation: InvarianceEquation, cosines: Floats, shifts: Float
     return np.float64 if enough else np.longdouble
 
 
-def _left(
-    equation: InvarianceEquation,
-    conditions: Sequence[Condition],
-    cosines: Floats,
-    shifts: Floats,
-    precision: type,
-) -> tuple[Floats, float, float]:
+def _left(state: NewtonState, precision: type) -> tuple[Floats, float, float]:
     """What all equations and conditions leave, (U + s,), and the sizes of both, relative.
 
     Divisors times coefficients in long doubles: near a torus the force cancels them.
     """
+    equation, conditions, cosines, shifts = state
     force = equation.force(cosines.astype(precision))
     left = (equation.divisors(shifts) * cosines - force)[equation.mask].astype(float)
     rates = equation.rates(shifts).astype(float)
@@ -201,40 +197,38 @@ def newton(
     growth : factor by which amplitudes may change from those of the guess. An iterate with
     `failure` where there is none, the best one met.
     """
+    state = NewtonState(equation, conditions, cosines, shifts)
     steps: list[NewtonStep] = []
-    best = (np.inf, cosines, shifts)
-    sizes = _sizes(equation, cosines)
+    best, least = state, np.inf
+    sizes = _sizes(state)
     precision = force_precision(equation, cosines, shifts)
     to_come, left, products = np.inf, 0.0, 0
 
     def failed(reason: str, *, unsolved: bool = False) -> Iterate:
         at_rounding = unsolved and to_come < ROUNDING_STEP
-        return Iterate(best[1], best[2], tuple(steps), reason, at_rounding)
+        return Iterate(best.cosines, best.shifts, tuple(steps), reason, at_rounding)
 
     for _ in range(ITERATIONS):
-        errors, residual, violation = _left(
-            equation, conditions, cosines, shifts, precision
-        )
+        errors, residual, violation = _left(state, precision)
         error = residual + violation
         if not np.isfinite(error):
             return failed("the equations or conditions leave the range of numbers")
-        gained = error < FALL * best[0]
-        if error < best[0]:
-            best = (error, cosines, shifts)
+        gained = error < FALL * least
+        if error < least:
+            best, least = state, error
         if left > INEXACT and not gained:
             return failed(unsolved_words(products, left), unsolved=True)
         try:
-            moved, turned, products, left = _step(
-                equation, conditions, cosines, shifts, errors, tolerances.krylov
-            )
+            moved, turned, products, left = _step(state, errors, tolerances.krylov)
         except np.linalg.LinAlgError as failure:
             return failed(str(failure), unsolved=True)
-        cosines, shifts = cosines + moved, shifts + turned
+        cosines, shifts = state.cosines + moved, state.shifts + turned
+        state = state._replace(cosines=cosines, shifts=shifts)
         relative = float(np.abs(moved).max() / np.abs(cosines).max())
         steps.append(NewtonStep(residual, relative, violation, products))
         line = f"step {len(steps)}: residual {residual:.1e}, change {relative:.1e}"
         progress(line, NO_FRACTION)
-        if runs_away := _runs_away(sizes, _sizes(equation, cosines), growth):
+        if runs_away := _runs_away(sizes, _sizes(state), growth):
             return failed(runs_away)
         if left > INEXACT:
             continue
@@ -246,19 +240,14 @@ def newton(
 
 
 def _step(
-    equation: InvarianceEquation,
-    conditions: Sequence[Condition],
-    cosines: Floats,
-    shifts: Floats,
-    errors: Floats,
-    accuracy: float,
+    state: NewtonState, errors: Floats, accuracy: float
 ) -> tuple[Floats, Floats, int, float]:
     """Changes of coefficients (H, C) and shifts (s,), products, and what is left of the errors.
 
     By a Jacobian that is not kept: it is large. LinAlgError with the reason where there is none.
     """
     try:
-        jacobian = Jacobian(equation, conditions, cosines, shifts)
+        jacobian = Jacobian(state)
         change, products, left = jacobian.approximate(-errors, accuracy)
     except (np.linalg.LinAlgError, ValueError) as failure:
         reason = f"the matrix of Newton's method is singular ({failure})"
@@ -268,9 +257,10 @@ def _step(
     return *jacobian.parts(change), products, left
 
 
-def _sizes(equation: InvarianceEquation, cosines: Floats) -> dict[str, float]:
+def _sizes(state: NewtonState) -> dict[str, float]:
     """What must not run away or vanish: the largest coefficient, and every seed's amplitude."""
-    amplitudes = np.abs(cosines[equation.seed_rows, equation.seed_columns])
+    equation, _, cosines, _ = state
+    amplitudes = np.abs(seed_amplitudes(equation, cosines))
     by_seed = zip(equation.seeds, amplitudes, strict=True)
     largest = float(np.abs(cosines).max())
     return {"the largest coefficient": largest} | {f"A_{q}": float(a) for q, a in by_seed}
