@@ -1,7 +1,6 @@
 """Exported C against the series at forty digits: what a stranger's compiler makes of the file, and nothing of ours."""
 
 import ctypes
-import subprocess
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -13,9 +12,8 @@ import pytest
 from symfpu import Chain, FromSeries, Torus, lindstedt
 from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
-from tests.codegen.compilers import c_self_test, compile_c, library_of, pointer
+from tests.codegen.compilers import c_self_test, library_of, pointer
 from tests.codegen.series_cases import OF_LARGEST, assert_close  # noqa: F401 (for other languages, too)
-from tests.tolerances import OF_TAIL
 
 DIGITS = 40
 
@@ -110,30 +108,6 @@ def test_self_test_sees_a_changed_coefficient(tmp_path):
     run = c_self_test(tmp_path, source)
     assert run.returncode == 1
     assert "ABOVE 1e-13" in run.stdout
-
-
-MAIN = """
-#include <stdio.h>
-#include <stddef.h>
-void first_orbit(size_t count, const double *t, const double *phases, double *Q, double *P);
-void second_orbit(size_t count, const double *t, const double *phases, double *Q, double *P);
-int main(void)
-{
-    double t[1] = {2.5}, Q[7], P[7], q[1], p[1];
-    first_orbit(1, t, NULL, Q, P);
-    second_orbit(1, t, NULL, q, p);
-    printf("%.17g %.17g %.17g %.17g\\n", Q[0], P[6], q[0], p[0]);
-    return 0;
-}
-"""
-
-
-def test_two_files_in_one_program(tmp_path):
-    first, second = case("alpha, one seed"), case("one mode")
-    sources = {"first.c": C.torus(program(first, "first")), "second.c": C.torus(program(second, "second")), "main.c": MAIN}
-    run = subprocess.run([compile_c(tmp_path, sources)], capture_output=True, text=True, check=True)
-    expected = [first.Q(2.5)[0], first.P(2.5)[6], second.Q(2.5)[0], second.P(2.5)[0]]
-    assert np.array(run.stdout.split(), dtype=float) == pytest.approx(np.array(expected, dtype=float), rel=OF_TAIL)
 
 
 def test_a_torus_at_rest(tmp_path):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from symfpu.codegen.languages.c import C
-from tests.codegen import series_cases
+from tests.codegen import series_cases, test_c99
 from tests.codegen.compilers import c_self_test, compile_c, library_of, pointer
 from tests.codegen.series_cases import CASES, OF_TAIL, UNIVERSAL, assert_close, drawn, expected_orbit, numeric, program_of, universal
 
@@ -148,25 +148,30 @@ MAIN = """
 int first_orbit(size_t, const double *, const double *, const double *, const double *, double *, double *);
 int second_orbit(size_t, const double *, const double *, const double *, const double *, double *, double *);
 int third_orbit(size_t, const double *, const double *, const double *, const double *, double *, double *);
+void torus_orbit(size_t, const double *, const double *, double *, double *);
 int main(void)
 {
     const double t[1] = {2.5}, A[2] = {0.125, 0.0625}, omega[2] = {1.421875, 1.859375};
-    double Q[3], P[3], q[3], p[3], u[1], v[1];
+    double Q[3], P[3], q[3], p[3], u[1], v[1], x[7], y[7];
     int bad = first_orbit(1, t, A, NULL, omega, Q, P) + second_orbit(1, t, A, NULL, omega, q, p)
               + third_orbit(1, t, A, NULL, omega, u, v);
-    printf("%.17g %.17g %.17g %.17g %.17g %.17g\\n", Q[0], P[2], q[0], p[2], u[0], v[0]);
+    torus_orbit(1, t, NULL, x, y);
+    printf("%.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\\n", Q[0], P[2], q[0], p[2], u[0], v[0], x[0], y[6]);
     return bad;
 }
 """
 
 
 def test_files_of_every_form_in_one_program(tmp_path):
+    """Series and a torus."""
+    torus = test_c99.case("alpha, one seed")
     programs = {called: made(form, name, called) for called, (form, name) in zip(("first", "second", "third"), FEW, strict=True)}
     sources = {f"{called}.c": C.series(program) for called, program in programs.items()}
+    sources["torus.c"] = C.torus(test_c99.program(torus, "torus"))
     run = subprocess.run([compile_c(tmp_path, {**sources, "main.c": MAIN})], capture_output=True, text=True, check=True)
     two = expected_orbit(CASES["wrapped modes"], [0.125, 0.0625], [0.0, 0.0], [1.421875, 1.859375], [2.5])
     one = expected_orbit(UNIVERSAL["mixed, one mode"], [0.125], [0.0], [1.421875], [2.5])
-    expected = [two[0][0, 0], two[1][0, 2]] * 2 + [one[0][0, 0], one[1][0, 0]]
+    expected = [two[0][0, 0], two[1][0, 2]] * 2 + [one[0][0, 0], one[1][0, 0], torus.Q(2.5)[0], torus.P(2.5)[6]]
     assert np.array(run.stdout.split(), dtype=float) == pytest.approx(np.array(expected, dtype=float), rel=OF_TAIL)
 
 

@@ -1,8 +1,6 @@
 """The loader: the same values and shapes as the torus, whichever backend, and no backend that was not asked for."""
 
 import pickle
-import resource
-import signal
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +12,7 @@ from symfpu.codegen.evaluator import CompiledFunctions, find_compiler
 from tests.codegen.compilers import program
 from tests.codegen.test_c99 import OF_LARGEST, angles, assert_close, case, random_times
 from tests.every_result import COPIES
+from tests.system import files_up_to
 
 LARGEST_TIME = 100  # NumPy rounds omega t: half a last place of it is 1e-14
 
@@ -110,14 +109,8 @@ def test_a_compiler_that_fails_says_why(torus, monkeypatch, tmp_path):
 def test_a_full_disk_is_told_with_the_file_that_finds_no_room(torus, monkeypatch):
     """The limit of the size of a file, which the system tells as it tells a full disk."""
     monkeypatch.setenv("CC", "true")
-    usual, handler = resource.getrlimit(resource.RLIMIT_FSIZE), signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (100, usual[1]))
-    try:
-        with pytest.raises(SymfpuError, match=r"/symfpu-.*\.c: File too large; make room there"):
-            compile_evaluator(torus, backend="c")
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
-        signal.signal(signal.SIGXFSZ, handler)
+    with files_up_to(100), pytest.raises(SymfpuError, match=r"/symfpu-.*\.c: File too large; make room there"):
+        compile_evaluator(torus, backend="c")
 
 
 def test_a_compiler_that_is_not_there(torus, monkeypatch):

@@ -140,14 +140,6 @@ def test_values_are_those_of_forty_digits(build, torus, text):
     assert_close(Q_default, torus.Q(exact))
 
 
-@pytest.mark.long
-def test_arrays_of_other_shapes_stop_the_program(build):
-    driver = "program p\nuse example, only: positions\ndouble precision :: Q(6, 2)\ncall positions([0d0, 1d0], Q)\nend program\n"
-    done = build(source(case("alpha, one seed"), "example"), driver)()
-    assert done.returncode != 0
-    assert "Q must have shape (7, size(t))" in done.stderr
-
-
 def test_no_times_no_values(build):
     driver = DRIVER.replace("NAME", "example").replace("SEEDS", "1").replace("MODES", "7")
     assert numbers(build(source(case("alpha, one seed"), "example"), driver)("0\n0.5\n")).size == 0

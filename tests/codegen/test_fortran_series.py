@@ -9,7 +9,7 @@ import pytest
 from symfpu import Chain, InputError, lindstedt
 from symfpu.codegen.languages.fortran import FORTRAN
 from symfpu.codegen.series_program import series_facts, series_program
-from tests.codegen import series_cases, test_fortran
+from tests.codegen import series_cases, test_c99, test_fortran, universal_cases
 from tests.codegen.compilers import program
 from tests.codegen.series_cases import CASES, OF_LARGEST, UNIVERSAL, assert_close, expected_orbit, numeric, program_of, universal
 
@@ -156,32 +156,36 @@ def test_two_modules_in_one_program(build):
     assert np.abs(values - np.array(expected)).max() <= OF_LARGEST
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        ("positions(x, x(1:1), y)", "Q must have shape (1, size(t))"),
-        ("momenta(x, x(1:1), y(:, 1:1))", "P must have shape (1, size(t))"),
-        ("positions(x, x, y(1:1, :))", "amplitudes must have size 1"),
-        ("positions(x, x(1:1), y(1:1, :), phases=x)", "phases must have size 1"),
-        ("positions(x, x(1:1), y(1:1, :), frequencies=x)", "frequencies must have size 1"),
-        ("corrected_frequencies(x, x(1:1))", "amplitudes must have size 1"),
-        ("corrected_frequencies(y(1, 1:1), x)", "omega must have size 1"),
-        ("corrected_frequencies(y(1, 1:1), x(1:1), y)", "jacobian must have shape (1, 1)"),
-    ],
-)
-def test_arrays_of_other_shapes_stop_the_program(stopped, call, message):
-    assert message in stopped(call)
+MODULES = {  # with the variables of a call
+    "torus": (lambda: test_fortran.source(test_c99.case("alpha, one seed"), "sample"), "x(2) = 1, y(6, 2) = 1"),
+    "series": (lambda: source("one mode"), "x(2) = 1, y(2, 2) = 1"),
+    "operations": (lambda: FORTRAN.series(universal_cases.program("wrapped, cut")), "x(2) = 1, z(3, 2, 2) = 1"),
+}
+STOPPED = [
+    ("torus", "positions(x, y)", "Q must have shape (7, size(t))"),
+    ("series", "positions(x, x(1:1), y)", "Q must have shape (1, size(t))"),
+    ("series", "momenta(x, x(1:1), y(:, 1:1))", "P must have shape (1, size(t))"),
+    ("series", "positions(x, x, y(1:1, :))", "amplitudes must have size 1"),
+    ("series", "positions(x, x(1:1), y(1:1, :), phases=x)", "phases must have size 1"),
+    ("series", "positions(x, x(1:1), y(1:1, :), frequencies=x)", "frequencies must have size 1"),
+    ("series", "corrected_frequencies(x, x(1:1))", "amplitudes must have size 1"),
+    ("series", "corrected_frequencies(y(1, 1:1), x)", "omega must have size 1"),
+    ("series", "corrected_frequencies(y(1, 1:1), x(1:1), y)", "jacobian must have shape (1, 1)"),
+    ("operations", "orbit_by_frequencies(x, x, x(1:1), z, z)", "frequencies must have size 2"),
+    ("operations", "orbit_by_frequencies(x, x, x, z(:, 1:1, :), z)", "dQ must have shape (3, size(t), 2)"),
+    ("operations", "orbit_by_frequencies(x, x, x, z, z(:, :, 1:1))", "dP must have shape (3, size(t), 2)"),
+    ("operations", "corrected_by_frequencies(x, x, z(1:2, 1:1, 1))", "slopes must have shape (2, 2)"),
+    ("operations", "positions(x, x(1:1), x, z(:, :, 1))", "amplitudes must have size 2"),
+    ("operations", "corrected_frequencies(x, x, x(1:1))", "omega must have size 2"),
+]
 
 
-@pytest.fixture(scope="module")
-def stopped(tmp_path_factory):
-    return stopping(tmp_path_factory.mktemp("shapes"), source("one mode"), "x(2) = 1, y(2, 2) = 1")
-
-
-def stopping(folder, text, variables):
-    """What a program with one call of a module says when it stops; the module is compiled once."""
-    gfortran = program("gfortran")
-    (folder / "sample.F90").write_text(text)
+@pytest.fixture(scope="module", params=MODULES)
+def module(request, tmp_path_factory):
+    """Its name, and what a program with one call of it says when it stops; the module is compiled once."""
+    gfortran, folder = program("gfortran"), tmp_path_factory.mktemp("shapes")
+    text, variables = MODULES[request.param]
+    (folder / "sample.F90").write_text(text())
     subprocess.run([gfortran, "-c", "sample.F90"], cwd=folder, check=True)
 
     def stopped(call):
@@ -191,7 +195,13 @@ def stopping(folder, text, variables):
         assert done.returncode != 0
         return done.stderr
 
-    return stopped
+    return request.param, stopped
+
+
+def test_arrays_of_other_shapes_stop_the_program(module):
+    name, stopped = module
+    for of, call, message in STOPPED:
+        assert of != name or message in stopped(call), call
 
 
 def test_order_250_compiles_and_stays_finite(build):

@@ -13,7 +13,6 @@ from symfpu.cli.main import main
 from symfpu.codegen.export import LANGUAGES
 from tests.codegen import test_fortran
 from tests.codegen.compilers import c_self_test, library_of, pointer
-from tests.codegen.test_fortran_series import stopping
 from tests.codegen.test_octave import arrays, listed, octave
 from tests.codegen.test_python_series import module
 from tests.codegen.universal_cases import CASES, TIMES, expected, given, program, series
@@ -186,26 +185,6 @@ def test_wrong_arguments_in_c(tmp_path):
     assert library.sample_corrected_frequencies(pointer(A), None, pointer(found), None) == 2
     assert library.sample_corrected_by_frequencies(pointer(A), None, pointer(found)) == 2
     assert (found == 7).all()
-
-
-@pytest.mark.parametrize(
-    ("call", "message"),
-    [
-        ("orbit_by_frequencies(x, x, x(1:1), z, z)", "frequencies must have size 2"),
-        ("orbit_by_frequencies(x, x, x, z(:, 1:1, :), z)", "dQ must have shape (3, size(t), 2)"),
-        ("orbit_by_frequencies(x, x, x, z, z(:, :, 1:1))", "dP must have shape (3, size(t), 2)"),
-        ("corrected_by_frequencies(x, x, z(1:2, 1:1, 1))", "slopes must have shape (2, 2)"),
-        ("positions(x, x(1:1), x, z(:, :, 1))", "amplitudes must have size 2"),
-        ("corrected_frequencies(x, x, x(1:1))", "omega must have size 2"),
-    ],
-)
-def test_arrays_of_other_shapes_stop_the_fortran_program(call, message, stopped):
-    assert message in stopped(call)
-
-
-@pytest.fixture(scope="module")
-def stopped(tmp_path_factory):
-    return stopping(tmp_path_factory.mktemp("shapes"), source("fortran", "wrapped, cut"), "x(2) = 1, z(3, 2, 2) = 1")
 
 
 def test_wrong_arguments_in_octave(tmp_path):

@@ -3,7 +3,6 @@
 import errno
 import os
 import random
-import resource
 import shutil
 import signal
 import subprocess
@@ -18,6 +17,7 @@ import pytest
 
 from symfpu import BundleError, Chain, InputError, alignment_indices, integrate, lindstedt, load, random_state, save
 from symfpu.errors import RunInterrupted
+from tests.system import files_up_to
 from tests.tolerances import CUT_VOLUME, ORBIT
 
 ROOT = Path(__file__).parents[2]
@@ -275,15 +275,8 @@ def test_files_that_are_no_such_checkpoint_are_refused_and_kept(kind, tmp_path):
 def test_a_full_disk_loses_nothing_already_written(kind, tmp_path):
     """The system itself refuses to let the file grow; the earlier checkpoint is still there, and the run goes on from it."""
     file, seen = tmp_path / "run", []
-    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (kind.bytes, limits[1]))
-    try:
-        with pytest.raises(InputError, match=os.strerror(errno.EFBIG)):
-            kind.function(**kind.short, file=file, every=0)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-        signal.signal(signal.SIGXFSZ, handler)
+    with files_up_to(kind.bytes), pytest.raises(InputError, match=os.strerror(errno.EFBIG)):
+        kind.function(**kind.short, file=file, every=0)
     assert [path.name for path in tmp_path.iterdir()] == ["run"]
     resumed = kind.function(**kind.short, file=file, progress=lambda label, done: seen.append(done))
     assert seen[0] > 1 / 500

@@ -1,7 +1,5 @@
 """Orbits: against other integrators and tori, reversal, sampling, what stops them, and runs that were killed."""
 
-import os
-import signal
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
@@ -15,6 +13,7 @@ from symfpu.dynamics.wells import potential, stretch_bounds
 from symfpu.errors import RunInterrupted
 from tests import tolerances
 from tests.dynamics.cases import resumed
+from tests.dynamics.test_kept_runs import press
 from tests.refusals import each, refused
 from tests.tolerances import COARSE_STEP, ENERGY_WALK, ESCAPE_ENERGY, LAST_DIGIT, STEP_ERROR, THOUSAND_ROUNDINGS
 
@@ -200,11 +199,6 @@ def test_an_interrupted_run_goes_on_bitwise_from_every_block(name, count, averag
     found, begun = resumed(partial(run, file=tmp_path / "orbit", every=0), 2)
     assert begun >= 5
     assert equal(found, run())
-
-
-def press(label, fraction):
-    """The interrupt key, pressed again at every look."""
-    os.kill(os.getpid(), signal.SIGINT)
 
 
 def test_without_a_file_and_beside_the_main_thread_the_interrupt_key_is_left_alone(tmp_path, state):
