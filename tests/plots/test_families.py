@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from symfpu import InputError
 from symfpu.breathers.floquet import ELLIPTIC, TRIVIAL
 from symfpu.plots.families import family_amplitudes, family_frequencies, family_multipliers, family_spectra
 from tests.plots.cases import pair, stable_family, unstable
@@ -68,8 +67,3 @@ def test_spectra_are_of_members_from_the_first_to_the_last(ax):
         assert list(line.get_xdata()) == list(range(1, 8))
         assert line.get_ydata() == pytest.approx(spectrum / spectrum.sum(), rel=LAST_DIGIT)
     assert len(ax.get_legend().get_texts()) == len(lines) <= 6
-
-
-def test_a_family_without_multipliers_has_no_picture_of_them(ax):
-    with pytest.raises(InputError, match="multipliers=True"):
-        family_multipliers(pair(), ax)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import symfpu
-from symfpu import Chain, InputError, fpu_trajectory, frequency_analysis, integrate, packet_state, plots, refine
+from symfpu import Chain, InputError, fpu_trajectory, frequency_analysis, integrate, packet_state, refine
+from tests.refusals import each, refused
 from tests.tolerances import ACTION_OF_LINES, CHANNEL_LINE, FREQUENCY_OF_LINE
 
 PAIR = Chain(N=8, alpha="0.3")
@@ -237,18 +238,9 @@ def test_a_chaotic_orbit_drifts():
     assert found.drift > 1e-3
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"lines": 0}, "lines"),
-        ({"level": 2}, "level"),
-        ({"windows": 0}, "windows"),
-    ],
-)
-def test_bad_arguments_are_named(change, words):
-    short = integrate(Chain(N=2, beta=1), [0.1], [0.0], 200, step=0.1)
-    with pytest.raises(InputError, match=words):
-        frequency_analysis(short, **change)
+@each(lines=[0], level=[2], windows=[0])
+def test_bad_arguments_are_named(name, value):
+    refused(frequency_analysis, name, value, orbit=integrate(Chain(N=2, beta=1), [0.1], [0.0], 200, step=0.1))
 
 
 def test_orbits_that_cannot_be_analysed_are_refused():
@@ -288,11 +280,6 @@ def test_a_slow_chain_is_analysed_whole_where_channels_have_no_values(monkeypatc
     monkeypatch.setattr("symfpu.spectral.analysis.WHOLE", 1000)
     with pytest.raises(InputError, match=r"T = 4500.*at least 6160.*so slow"):
         frequency_analysis(orbit, lines=1)
-
-
-def test_the_picture_takes_an_analysis_only():
-    with pytest.raises(InputError, match="FrequencyAnalysis"):
-        plots.lines(3)
 
 
 def test_a_mode_at_rest_has_no_lines():

@@ -10,6 +10,8 @@ import zipfile
 from dataclasses import fields, is_dataclass, replace
 from datetime import UTC, datetime
 from fractions import Fraction
+from functools import partial
+from itertools import product
 
 import mpmath
 import numpy as np
@@ -50,6 +52,21 @@ SERIES = {
     "nested": lambda: lindstedt(BOTH, (1, 2), order=4, ring="nested"),
     "nested, beta": lambda: lindstedt(BETA, (1, 2, 5), order=2, ring="nested"),
 }
+POTENTIALS = ["toda:1/2", "lj:12,6", "poly:1/3,0,1/5", "poly:0,0,0,1/5"]
+CHOSEN = {"universal": {}, "digits": {"frequencies": ("0.392",), "digits": 30}}
+WAVES = [{"potential": "toda:1/2"}, {"beta": "1/3"}, {"alpha": "1/3", "beta": "-1/5"}]
+
+
+def waves(order=6, **law):
+    chain = Chain(8, **(law or WAVES[0]), ends="periodic")
+    return lindstedt(chain, (1, -3), ("0.7661", "1.8486"), order)
+
+
+OTHERS = {
+    f"{text}, {kind}": partial(lindstedt, Chain(8, potential=text), (1,), order=2, **chosen)
+    for text, (kind, chosen) in product(POTENTIALS, CHOSEN.items())
+}
+OTHERS |= {f"waves of order {order}, {law}": partial(waves, order, **law) for order, law in product((0, 1, 5), WAVES)}
 ALL_LENGTHS = {
     "all N": lambda: lindstedt(Chain("N", alpha=1, beta="1/3"), (1, 2), order=3),
     "all N, both ends": lambda: lindstedt(Chain("N", alpha=1), ("N-2", 1), order=4, ring="nested"),
@@ -97,9 +114,9 @@ def same(a, b):
     return repr(a._mpf_) == repr(b._mpf_) if isinstance(a, mpmath.mpf) else repr(a) == repr(b) if isinstance(a, float) else bool(a == b)
 
 
-@pytest.mark.parametrize("case", SERIES | ALL_LENGTHS)
+@pytest.mark.parametrize("case", SERIES | ALL_LENGTHS | OTHERS)
 def test_a_series_comes_back_exactly(case, tmp_path):
-    series = (SERIES | ALL_LENGTHS)[case]()
+    series = (SERIES | ALL_LENGTHS | OTHERS)[case]()
     held = saved_file(save(tmp_path / "series", series))
     assert same(held.result, series)
     assert held.verdict is None
