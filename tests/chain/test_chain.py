@@ -4,13 +4,16 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from symfpu import Chain, InputError
+from symfpu.chain import bonds
 from symfpu.chain.chain import LARGEST_EXPRESSION
+from symfpu.numbers.arithmetic import MULTIPRECISION
 from symfpu.numbers.typed import decimal
 from tests.refusals import each, refused
 from tests.tolerances import INTEGER, ROUNDING
@@ -191,3 +194,13 @@ def test_states_of_another_length_are_refused(shape):
 def test_couplings_of_no_mode_are_refused(modes):
     with pytest.raises(InputError, match="mode"):
         Chain(8, alpha=1).B(*modes)
+
+
+def test_a_chain_gives_its_law_in_the_arithmetic_asked_for():
+    chain = Chain(8, alpha="1/3", beta="-1/7")
+    assert chain.couplings == (Fraction(1, 3), Fraction(-1, 7))
+    assert chain.law() == (1 / 3, -1 / 7)
+    with mpmath.workdps(40):
+        law = chain.law(MULTIPRECISION)
+        assert law == (mpmath.mpf(1) / 3, -mpmath.mpf(1) / 7)
+        assert bonds.tension(law, mpmath.mpf(1)) == 1 + law[0] + law[1]

@@ -25,6 +25,10 @@ POTENTIALS = [
     morse(-1),
     polynomial("1/3", 0, "1/5"),
     polynomial(0, 0, 1),
+    polynomial("1/4"),
+    polynomial(0, "-1/2"),
+    polynomial("3/10", "1/5"),
+    polynomial("1/10", "-1/5", "3/10", "2/5", "-1/2"),
 ]
 STRETCHES = [-0.7, -0.1, -1e-3, -1e-9, 1e-12, 0.02, 0.4, 1.7]
 FUNCTIONS = {

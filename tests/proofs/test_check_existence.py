@@ -88,8 +88,6 @@ FORGERIES = {
     "a wider strip": (("nu",), lambda _: "2", "not below 1|exceeds r"),
     "no strip": (("nu",), lambda _: "1", "nu is not"),
     "fewer free harmonics": (("free",), lambda _: 1, "wrong number of weights|block"),
-    "another kind": (("format",), lambda _: "symfpu propagation certificate", "not a symfpu existence certificate"),
-    "a later version": (("schema",), lambda _: 4, "supports schema"),
 }
 
 

@@ -64,8 +64,6 @@ FORGERIES = {
     "a frequency hardly known": ("of its amplitude", ("existence", "frequency", 1), lambda r: r << 60, "exceeds r"),
     "a frequency not known": ("of its amplitude", ("existence", "frequency", 1), lambda r: r << 82, "not known well enough"),
     "another amplitude": ("of its amplitude", ("existence", "value"), lambda _: "1001/1000", NO_ORBIT),
-    "another kind": ("stable", ("format",), lambda _: "symfpu existence certificate", "not a symfpu stability certificate"),
-    "a later version": ("stable", ("schema",), lambda _: 2, "supports schema"),
 }
 
 

@@ -151,6 +151,8 @@ def test_a_certificate_finds_its_checker(kind, tmp_path):
     assert verify_certificate(tmp_path / "c.json") == VERIFY[kind](tmp_path / "c.json")
     data = json.loads((tmp_path / "c.json").read_text())
     assert "unknown" in reason(verify_certificate, sealed(data | {"more": 1}), tmp_path)
+    assert "not a " in reason(VERIFY[kind], sealed(data | {"format": "other"}), tmp_path)
+    assert "support" in reason(VERIFY[kind], sealed(data | {"schema": 99}), tmp_path)
 
 
 @pytest.mark.parametrize("kind", CHECKERS)
