@@ -135,11 +135,12 @@ def test_an_orbit_over_the_barrier_of_the_alpha_model_is_lost():
     samples=[10, 10**9],
     seed=[-1],
     block=[0],
+    frames=[0, 1.5, 10**6],
     Q=[[0.0] * 7, [0.1] * 6],
     chain=["a chain"],
 )
 def test_bad_input_is_refused(name, value):
-    refused(alignment_indices, name, value, chain=BETA, Q=[0.1] * 7, P=[0.0] * 7, T=100.0, frames=1)
+    refused(alignment_indices, name, value, chain=BETA, Q=[0.1] * 7, P=[0.0] * 7, T=100.0)
 
 
 @pytest.mark.parametrize(("name", "steps"), [("blanes_moan6", (0.4, 0.2)), ("kahan_li8", (0.4, 0.2)), ("aba864", (0.2, 0.1))])

@@ -8,6 +8,8 @@ import pytest
 from symfpu import Chain, InputError, alignment_indices, seconds_needed
 from symfpu.dynamics import alignment
 from tests.dynamics.cases import resumed
+from tests.dynamics.test_kept_runs import KINDS, same
+from tests.refusals import each, refused
 
 CHAIN = Chain(6, alpha="0.3", beta="0.2")
 PORTION = "symfpu.dynamics.frame_run.PORTION"
@@ -18,13 +20,6 @@ SHORT = {"T": 150.0, "samples": 64, "vectors": 4, "step": 0.25, "block": 16}
 def state():
     draws = np.random.default_rng(3)
     return {"Q": draws.normal(scale=0.3, size=5), "P": draws.normal(scale=0.3, size=5)}
-
-
-def same(one, other):
-    assert np.array_equal(one.times, other.times)
-    assert np.array_equal(one.log10_gali, other.log10_gali)
-    assert np.array_equal(one.lyapunov, other.lyapunov)
-    assert one.energy_error == other.energy_error
 
 
 @pytest.mark.parametrize(("T", "block", "scale"), [(150.0, 16, 1.0), (2500.0, 2048, 4.0)])
@@ -41,7 +36,7 @@ def test_an_interrupted_run_goes_on_bitwise_from_marks_and_between_them(T, block
     again = partial(alignment_indices, CHAIN, **start, **run, file=tmp_path / "gali", every=0, frames=1)
     found, begun = resumed(again, 1)
     assert begun == len(ends) + 1
-    same(found, whole)
+    same(KINDS["indices"], found, whole)
 
 
 def test_a_run_is_written_every_so_many_seconds_and_at_the_end(tmp_path, state, monkeypatch):
@@ -67,15 +62,15 @@ def test_a_checkpoint_is_taken_on_by_a_machine_that_rounds_otherwise(tmp_path, s
 
 def test_a_second_run_on_the_file_of_a_later_frame_is_refused(tmp_path, state):
     """Begun while the first goes on."""
-    refused = []
+    found = []
 
     def second(label, done):
         with pytest.raises(InputError, match=r"^file = .*process [0-9]+ on") as caught:
             alignment_indices(CHAIN, **state, **SHORT, file=tmp_path / "gali-2", frames=1)
-        refused.append(caught)
+        found.append(caught)
 
     alignment_indices(CHAIN, **state, **SHORT, file=tmp_path / "gali", frames=2, progress=second)
-    assert refused
+    assert found
     assert sorted(path.name for path in tmp_path.iterdir()) == ["gali", "gali-2"]
 
 
@@ -84,7 +79,6 @@ def test_the_time_of_a_run_is_that_of_its_steps_and_frames(monkeypatch):
     assert seconds_needed(CHAIN, 1024.0, step=0.25, frames=3) == 12.0
 
 
-@pytest.mark.parametrize(("changes", "name"), [({"T": 1.0}, "T"), ({"vectors": 11}, "vectors"), ({"step": 0.0}, "step")])
-def test_the_time_of_a_run_that_cannot_be_is_refused(changes, name):
-    with pytest.raises(InputError, match=rf"^{name} = "):
-        seconds_needed(CHAIN, **{"T": 1000.0} | changes)
+@each(T=[1.0], vectors=[11], step=[0.0])
+def test_the_time_of_a_run_that_cannot_be_is_refused(name, value):
+    refused(seconds_needed, name, value, chain=CHAIN, T=1000.0)

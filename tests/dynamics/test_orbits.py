@@ -249,14 +249,10 @@ LONG, FLAT = np.zeros((4, 5)), np.zeros((0, 6))
     workers=[0],
     every=[-1],
     averages=[1],
+    look=[0, -1.0, "long", np.inf],
 )
 def test_bad_input_is_refused(name, value, state):
-    refused(integrate, name, value, chain=MIXED, Q=state[0], P=state[1], T=10.0, step=0.1)
-
-
-@pytest.mark.parametrize("look", [0, -1.0, "long", np.inf])
-def test_bad_looks_are_refused(look, state):
-    refused(integrate, "look", look, chain=MIXED, Q=state[0], P=state[1], T=10.0, step=0.1, averages=True)
+    refused(integrate, name, value, chain=MIXED, Q=state[0], P=state[1], T=10.0, step=0.1, averages=True)
 
 
 @pytest.mark.parametrize(("Q", "P", "name"), [(FLAT, FLAT, "Q, P"), (np.zeros((4, 6)), np.zeros(6), "P")])

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from symfpu import Chain, InputError, alignment_indices
+from symfpu import Chain, alignment_indices
 from symfpu.dynamics.dimension import TorusDimension
 from symfpu.dynamics.several_frames import together
 
@@ -45,12 +45,6 @@ def test_four_frames_by_default():
     several = alignment_indices(BETA, [0, 0.4, 0], [0, 0, 0], 200.0, vectors=2, samples=64)
     assert len(several.frames) == len(several.dimension().frames) == 4
     assert "by 4 frames" in repr(several)
-
-
-@pytest.mark.parametrize("frames", [0, 1.5, 10**6])
-def test_bad_numbers_of_frames_are_refused(frames):
-    with pytest.raises(InputError, match=r"^frames = "):
-        alignment_indices(*RUN, frames=frames)
 
 
 def test_files_of_further_frames_are_beside_the_first_and_go_on(tmp_path):

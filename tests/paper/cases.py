@@ -1,7 +1,7 @@
 """For the verdicts, made by hand: alignment indices of a torus of a known dimension, spectra, records of orbits; and a short Fig. 9."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -26,6 +26,30 @@ def foretold(dimension, *, vectors=7, frames=4, T=1e11):
     torus = SimpleNamespace(chain=Chain(32, alpha="0.33"), seeds=(1, 2, 3, 4, 5))
     rates = 10.0 ** -np.arange(3, 8)
     return (ForetoldIndices(torus, t, np.log10(t)[:, None] * powers, np.log(t), rates, "modes at rest"),) * frames
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A torus as far as one number goes, its energy or residual, that it has for each coordinate order."""
+
+    order: int
+    values: dict
+    phases: None = None
+
+    @property
+    def origin(self):
+        return self
+
+    def cut_at(self, order):
+        return replace(self, order=order)
+
+    def torus(self, phases=None):
+        return self
+
+    def residual(self):
+        return self.values[self.order]
+
+    energy = residual
 
 
 def unheard(label, fraction):

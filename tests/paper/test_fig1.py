@@ -1,6 +1,5 @@
 """Claims on Fig. 1, each true and not, from data made by hand; the real ones are in tests/paper/test_table.py."""
 
-from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,30 +8,9 @@ import pytest
 from symfpu import Chain
 from symfpu.paper import fig1_claims
 from symfpu.paper.claims import FAILS, HOLDS, PARTLY
-from tests.paper.cases import exponential
+from tests.paper.cases import Cut, exponential
 
 pytestmark = pytest.mark.long  # compilers and whole figures: minutes together
-
-
-@dataclass(frozen=True)
-class Torus:
-    """With an energy for each coordinate order."""
-
-    order: int = 30
-    energies: dict = field(default_factory=lambda: {12: 0.023451, 30: 0.023451})
-
-    @property
-    def origin(self):
-        return self
-
-    def cut_at(self, order):
-        return replace(self, order=order)
-
-    def torus(self):
-        return self
-
-    def energy(self):
-        return self.energies[self.order]
 
 
 def data(**changes):
@@ -43,7 +21,8 @@ def data(**changes):
     differences = {k: (10.0**-k, 1e-12) for k in range(2, 8, 2)} | {k: (1e-7 * (1 + abs(k - 24)), 1e-12) for k in range(8, 30, 2)}
     words = SimpleNamespace(word="converged", verdict="converged")
     texts = dict.fromkeys(("best_difference", "cancellation", "term_size", "harmonic_error", "energy_error"), "ours")
-    given = {"sums": (upper, lower), "errors": errors, "differences": differences, "assessment": words, "best_order": 12, "torus": Torus()}
+    torus = Cut(30, {12: 0.023451, 30: 0.023451})
+    given = {"sums": (upper, lower), "errors": errors, "differences": differences, "assessment": words, "best_order": 12, "torus": torus}
     return SimpleNamespace(**given | {"residuals": {2: 1e-2, 12: 1e-5, 30: 1e-4}, "claims": lambda: texts} | changes)
 
 
@@ -111,8 +90,8 @@ def test_both_energies_fluctuate_as_printed(last, best, verdict):
 
 @pytest.mark.parametrize(("late", "verdict"), [(0.02345, HOLDS), (0.0236, PARTLY)])
 def test_the_energy_is_that_of_its_coordinate_order(late, verdict):
-    assert fig1_claims.energy_claim(data(torus=Torus(30, {12: 0.02345, 30: late}))).verdict == verdict
-    assert fig1_claims.energy_claim(data(torus=Torus(30, {12: 0.0236, 30: 0.0236}))).verdict == FAILS
+    assert fig1_claims.energy_claim(data(torus=Cut(30, {12: 0.02345, 30: late}))).verdict == verdict
+    assert fig1_claims.energy_claim(data(torus=Cut(30, {12: 0.0236, 30: 0.0236}))).verdict == FAILS
 
 
 def test_amplitudes_of_order_24():

@@ -1,6 +1,6 @@
 """Fig. 9: verdicts with both outcomes, its alignment indices, the tori that it is near, and the figure over a shorter time."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,7 +13,7 @@ from symfpu.paper.claims import FAILS, HOLDS, PARTLY
 from symfpu.paper.dimensions import FULL_TIME, FigureIndices, Foretold, TorusForecast, figure_alignment, foretold_dimension
 from symfpu.paper.fig9_tori import Approach, approach, distance_from, five_angles, tori_claim
 from symfpu.paper.starts import printed_row
-from tests.paper.cases import alignment, foretold, shorter_figure_9, unheard
+from tests.paper.cases import Cut, alignment, foretold, shorter_figure_9, unheard
 from tests.tolerances import AT_THE_START, KEPT_RATES, ROUNDING
 
 ROW = printed_row("Fig. 9")
@@ -58,31 +58,9 @@ def test_widths_of_natural_packets():
     assert [claim.verdict for claim in fig9.packet_claims(replace(ROW, energy="0.0164"))] == [FAILS, FAILS]  # a tenth more
 
 
-@dataclass(frozen=True)
-class Series:
-    """With a residual for each coordinate order."""
-
-    order: int
-    residuals: dict
-    phases: None = None
-
-    @property
-    def origin(self):
-        return self
-
-    def cut_at(self, order):
-        return replace(self, order=order)
-
-    def torus(self, phases):
-        return self
-
-    def residual(self):
-        return self.residuals[self.order]
-
-
 @pytest.mark.parametrize(("late", "verdict"), [(1e-3, HOLDS), (4e-3, HOLDS), (2e-4, PARTLY), (1e-5, FAILS)])
 def test_gain_after_order_50(late, verdict):
-    claim = fig9.gain_claim(Series(242, {50: 2e-3, 100: 2e-3, 150: late, 200: 2e-3, 242: 2e-3}))
+    claim = fig9.gain_claim(Cut(242, {50: 2e-3, 100: 2e-3, 150: late, 200: 2e-3, 242: 2e-3}))
     assert claim.verdict == verdict
     assert "50: 2.0e-03, 100: 2.0e-03, 150:" in claim.ours
 

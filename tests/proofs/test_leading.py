@@ -343,12 +343,13 @@ def test_seeds_in_any_order():
     assert leading_factor(chain, (5, 2), 7, (5, 2), (-1, 1)) == leading_factor(chain, (2, 5), 7, (5, 2), (1, -1))
 
 
-ONE_SEED = {"chain": Chain(N=8, alpha=1), "seeds": (1,)}
+ONE_SEED, TODA = {"chain": Chain(N=8, alpha=1), "seeds": (1,)}, Chain(8, potential="toda:1/2")
 AT_ONE = ONE_SEED | {"q": 3, "modes": (1, 1), "signs": (1, 1)}
 BAD = [
     *((leading_term, ONE_SEED, "q", q) for q in (1, 8, 0, 1.5)),
     (leading_term, ONE_SEED | {"chain": Chain(N=8, beta=1)}, "q", 2),
-    (leading_term, ONE_SEED | {"q": 2}, "chain", Chain(N=8, alpha=1, beta=1)),
+    *((leading_term, ONE_SEED | {"q": 2}, "chain", chain) for chain in (Chain(N=8, alpha=1, beta=1), TODA)),
+    *((function, ONE_SEED | {"order": 2}, "chain", TODA) for function in (leading_terms, lemma_holds)),
     (leading_terms, ONE_SEED | {"order": 1}, "seeds", (8,)),
     (leading_terms, ONE_SEED, "order", -1),
     (lemma_holds, ONE_SEED, "order", 1.0),
