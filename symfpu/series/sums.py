@@ -43,11 +43,7 @@ class SeriesSums(SeriesCoefficients):
     """A series whose frequencies are chosen, summed."""
 
     def _numeric(self) -> None:
-        if self.frequencies is None:
-            allowed = "a series with chosen frequencies"
-            raise InputError(
-                "series", "universal form", allowed, "give frequencies= to lindstedt"
-            )
+        require_frequencies(self)
 
     @cached_property
     def _kappa(self) -> Any:
@@ -262,6 +258,14 @@ class SeriesSums(SeriesCoefficients):
         orders = range(1, self.order + 1)
         diagonals = [self.grading.diagonal(self.chain.degree_step * k) for k in orders]
         return diagonals, [self._sign(k) * self.corrections[k] for k in orders]
+
+
+def require_frequencies(series: SeriesCoefficients) -> None:
+    """InputError for a series in universal form."""
+    if series.frequencies is None:
+        allowed = "a series with chosen frequencies"
+        advice = "give frequencies= to lindstedt"
+        raise InputError("series", "universal form", allowed, advice)
 
 
 def _summed(table: NDArray[Any], index: Ints, count: int) -> NDArray[Any]:

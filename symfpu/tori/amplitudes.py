@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import lcm
 from typing import Any
 
@@ -31,6 +31,7 @@ from symfpu.results.field import Field, listed, shown_number
 from symfpu.results.result import Tabled
 from symfpu.results.table import Table
 from symfpu.series.series import LindstedtSeries, require_any_series
+from symfpu.series.sums import require_frequencies
 from symfpu.tori.from_series import FromSeries, series_behind
 from symfpu.tori.root_certificate import certify_root
 from symfpu.tori.torus import Torus
@@ -225,43 +226,34 @@ def solve_amplitudes(
     >>> {q: round(A, 7) for q, A in torus.amplitudes.items()}
     {1: 0.5843165, 2: 0.4118684}
     """
-    require_any_series(series)
-    if series.frequencies is None:
-        allowed = "a series with chosen frequencies"
-        raise InputError(
-            "series", "universal form", allowed, "give frequencies= to lindstedt"
-        )
+    require_frequencies(require_any_series(series))
     if not series.chain.periodic:  # opposite waves of one frequency stand
         _refuse_commensurable(series)
     K = order_argument("frequency_order", frequency_order, series)
     coordinate_order = order_argument("order", order, series)
-    at_rest = dict.fromkeys(series.seeds, 0.0)
-    angles = at_rest | by_seed("phases", phases, series)
-    orders = [k for k in frequency_orders(series) if k <= K]
-    if not orders:
-        first = first_shifting_order(series.chain)
-        allowed = f"{first} or more, the order of the first frequency correction"
-        advice = (
-            "compute a longer series" if series.order < first else f"take {first} or more"
-        )
-        raise InputError("frequency_order", K, allowed, advice)
+    angles = by_seed("phases", phases, series)
+    orders = orders_up_to(series, K)
     history = amplitude_history(series)
     start = start_of(series, orders, history, guess)
     squares, residual = root_squares(series, orders[-1], start)
     amplitudes = square_roots(series, squares)
-    certificate = certify_root(series, list(squares), K) if series.digits else None
-    origin = FromSeries(
-        series=series,
-        amplitudes=tuple(amplitudes),
-        frequency_order=K,
-        order=coordinate_order,
-        history=dict(history.amplitudes),
-        root_residual=residual,
-        certificate=certificate,
-    )
-    torus = origin.torus(angles)
-    doubts = order_doubts(amplitudes, orders, history)
-    return torus.doubted((*doubts, *residual_doubts(torus)))
+    origin = FromSeries(series, amplitudes, K, coordinate_order, root_residual=residual)
+    return judged(origin.torus(angles), history)
+
+
+def judged(torus: Torus[FromSeries], history: AmplitudeHistory) -> Torus[FromSeries]:
+    """The same torus with its amplitude history, certificate and doubts."""
+    series, K = torus.origin.series, torus.origin.frequency_order
+    amplitudes = torus.origin.amplitudes
+    certificate = None
+    if series.digits:
+        with series.numbers.context(series.digits):
+            squares = [a**2 for a in amplitudes]
+            certificate = certify_root(series, squares, K)
+    known = torus.origin.judged(dict(history.amplitudes), certificate)
+    doubts = order_doubts(amplitudes, orders_up_to(series, K), history)
+    found = replace(torus, origin=known)
+    return found.doubted((*doubts, *residual_doubts(found)))
 
 
 def square_roots(series: LindstedtSeries, squares: Numbers) -> tuple[Any, ...]:
@@ -295,6 +287,19 @@ def _refuse_commensurable(series: LindstedtSeries) -> None:
                 )
                 change = f"change omega_{series.seeds[-1]} or lower the order"
                 raise InputError("frequencies", typed, allowed, f"{coincide}: {change}")
+
+
+def orders_up_to(series: LindstedtSeries, frequency_order: int | None) -> list[int]:
+    """The orders of frequency corrections up to one; InputError where there are none."""
+    K = order_argument("frequency_order", frequency_order, series)
+    orders = [k for k in frequency_orders(series) if k <= K]
+    if not orders:
+        first = first_shifting_order(series.chain)
+        allowed = f"{first} or more, the order of the first frequency correction"
+        longer, more = "compute a longer series", f"take {first} or more"
+        advice = longer if series.order < first else more
+        raise InputError("frequency_order", K, allowed, advice)
+    return orders
 
 
 def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:

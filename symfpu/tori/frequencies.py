@@ -10,7 +10,7 @@ its digits.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -33,15 +33,14 @@ from symfpu.series.memory import check_size
 from symfpu.series.series import LindstedtSeries
 from symfpu.tori.amplitudes import (
     amplitude_history,
-    frequency_orders,
-    order_doubts,
+    judged,
+    orders_up_to,
     residual_doubts,
     shifts,
 )
 from symfpu.tori.broyden import Found, NotFound, solve, walk
 from symfpu.tori.from_series import FromSeries, require_series_torus
 from symfpu.tori.orders import Orders, require_shifts
-from symfpu.tori.root_certificate import certify_root
 from symfpu.tori.short_series import shifts_by_squares
 from symfpu.tori.torus import Torus
 
@@ -407,25 +406,18 @@ def doubted(torus: Torus[FromSeries]) -> Torus[FromSeries]:
     As `solve_amplitudes` gives them.
     """
     series, K = torus.origin.series, torus.origin.frequency_order
-    orders = [k for k in frequency_orders(series) if k <= K]
     try:
         history = amplitude_history(series)
     except UndeterminedAmplitudes as failure:
         undetermined = str(failure).split(";")[0]
         return torus.doubted((undetermined, *residual_doubts(torus)))
+    found = judged(torus, history)
     amplitudes = tuple(torus.amplitudes.values())
-    other = history.amplitudes.get(orders[-1], amplitudes)
-    doubts = [*order_doubts(amplitudes, orders, history), *residual_doubts(torus)]
+    *_, last = orders_up_to(series, K)
+    other = history.amplitudes.get(last, amplitudes)
     distances = [abs(float(a / b - 1)) for a, b in zip(amplitudes, other, strict=True)]
-    if max(distances) > SAME_ROOT:
-        by_name = dict(zip(series.seeds, map(float, other), strict=True))
-        found = _listed("A", by_name)
-        doubts.append(f"these frequencies have other amplitudes as well: {found}")
-    certificate = None
-    if series.digits:
-        with series.numbers.context(series.digits):
-            squares = [a**2 for a in amplitudes]
-            certificate = certify_root(series, squares, K)
-    known = dict(history.amplitudes)
-    judged = replace(torus, origin=torus.origin.judged(known, certificate))
-    return judged.doubted(doubts)
+    if max(distances) <= SAME_ROOT:
+        return found
+    listed = _listed("A", dict(zip(series.seeds, map(float, other), strict=True)))
+    doubt = f"these frequencies have other amplitudes as well: {listed}"
+    return found.doubted((*found.warnings, doubt))

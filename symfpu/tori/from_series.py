@@ -20,6 +20,7 @@ from symfpu.results.numbers import fifteen_digits, number_text
 from symfpu.results.result import Tabled
 from symfpu.results.table import Table
 from symfpu.series.series import LindstedtSeries, require_any_series
+from symfpu.series.sums import require_frequencies
 from symfpu.tori.columns import columns_of
 from symfpu.tori.torus import Origin, Torus, comes_from
 
@@ -95,10 +96,7 @@ class FromSeries(Origin):
 
     def __post_init__(self) -> None:
         digits = require_any_series(self.series).digits
-        if self.series.frequencies is None:
-            allowed = "a series with chosen frequencies"
-            advice = "give frequencies= to lindstedt"
-            raise InputError("series", "universal form", allowed, advice)
+        require_frequencies(self.series)
         if digits is not None:
             for name in ("amplitudes", "history"):
                 shown = with_digits(getattr(self, name), digits)

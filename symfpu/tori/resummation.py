@@ -28,13 +28,14 @@ from symfpu.numbers.arithmetic import (
 from symfpu.numbers.counted import counted
 from symfpu.numbers.mpfr import MPFR, at_the_face, in_mpf, inside
 from symfpu.numbers.public import public
-from symfpu.numbers.typed import integer, order_of
+from symfpu.numbers.typed import order_of
 from symfpu.results.attributes import attributes
 from symfpu.results.grid import Variable
 from symfpu.results.result import Tabled
 from symfpu.results.table import Column, Table
 from symfpu.series.series import LindstedtSeries, require_any_series
-from symfpu.tori.amplitudes import first_shifting_order, frequency_orders, shifts
+from symfpu.series.sums import require_frequencies
+from symfpu.tori.amplitudes import orders_up_to, shifts
 from symfpu.tori.from_series import FromSeries, require_series_torus
 from symfpu.tori.torus import Origin, Torus, require_fixed_solution
 
@@ -232,22 +233,8 @@ def _checked(series: LindstedtSeries, frequency_order: int | None) -> list[int]:
 
     InputError if there is none, or none chosen frequency.
     """
-    if series.frequencies is None:
-        allowed = "a series with chosen frequencies"
-        raise InputError(
-            "series", "universal form", allowed, "give frequencies= to lindstedt"
-        )
-    top = series.order
-    if frequency_order is not None:
-        top = integer(frequency_order, "frequency_order", 1)
-    orders = [k for k in frequency_orders(series) if k <= top]
-    if not orders or top > series.order:
-        first = first_shifting_order(series.chain)
-        allowed = f"{first}..{series.order}, orders with a frequency correction"
-        raise InputError(
-            "frequency_order", top, allowed, "take another or compute a longer series"
-        )
-    return orders
+    require_frequencies(series)
+    return orders_up_to(series, frequency_order)
 
 
 def _by_seed(
