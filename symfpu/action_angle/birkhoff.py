@@ -27,7 +27,7 @@ import mpmath
 import symengine as se
 
 from symfpu.algebra.formulas import Multiplier
-from symfpu.algebra.quotients import monomials_of, quotient_field
+from symfpu.algebra.quotients import expression_of, quotient_field
 from symfpu.algebra.real_cyclotomic import RealCyclotomic, double_cosines
 from symfpu.algebra.truncated import Exponents, Truncated, inverted, variables
 from symfpu.chain.chain import Chain, require_chain
@@ -364,7 +364,7 @@ def _in_symbols(
     symbols = list(map(linear_symbol, modes))
     kappa, found = _kappa_square(series.chain), {}
     for e, c in H.items():
-        top, bottom = (_expression(part, symbols) for part in (c.top, c.bottom))
+        top, bottom = (expression_of(part, symbols) for part in (c.top, c.bottom))
         found[e] = kappa ** (sum(e) - 1) * top / bottom
     return found
 
@@ -419,14 +419,6 @@ def _cosines(value: RealCyclotomic, N: int) -> Any:
     for k, (p, q) in enumerate(value.by_cosines()):
         factor = 2 if k else 1
         terms.append(se.Rational(factor * p, q) * se.cos(k * se.pi / (2 * N)))
-    return se.Add(*terms)
-
-
-def _expression(polynomial: Any, symbols: Sequence[Any]) -> Any:
-    terms = []
-    for powers, number in monomials_of(polynomial):
-        factors = [x**e for x, e in zip(symbols, powers, strict=True)]
-        terms.append(se.Mul(se.Integer(number), *factors))
     return se.Add(*terms)
 
 

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import flint
+import symengine as se
 
 
 def quotient_field(names: Sequence[str]) -> tuple[Quotient, ...]:
@@ -105,3 +106,12 @@ def monomials_of(polynomial: Any) -> Iterator[tuple[tuple[int, ...], int]]:
     """Of the top or the bottom of a quotient: exponents of the variables, and coefficient."""
     for exponents, coefficient in polynomial.to_dict().items():
         yield tuple(map(int, exponents)), int(coefficient)
+
+
+def expression_of(polynomial: Any, symbols: Sequence[Any]) -> Any:
+    """A polynomial of a quotient as a SymEngine expression in other symbols."""
+    terms = []
+    for powers, number in monomials_of(polynomial):
+        factors = [x**e for x, e in zip(symbols, powers, strict=True)]
+        terms.append(se.Mul(se.Integer(number), *factors))
+    return se.Add(*terms)

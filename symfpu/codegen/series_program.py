@@ -41,7 +41,7 @@ from symfpu.errors import InputError, ResonantDivisor
 from symfpu.numbers.typed import decimal
 from symfpu.series.lindstedt import lindstedt
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.amplitudes import order_argument
+from symfpu.tori.orders import order_argument
 
 NEARBY = 8  # choices of frequencies for test vectors, until one is not resonant
 
@@ -159,8 +159,8 @@ class Forms(NamedTuple):
 
 
 def _cuts(series: LindstedtSeries, order: int | None, frequency_order: int | None) -> Cuts:
-    cut = order_argument("order", order, series)
-    return cut, order_argument("frequency_order", frequency_order, series)
+    cut = order_argument("order", order, series.order)
+    return cut, order_argument("frequency_order", frequency_order, series.order)
 
 
 def _universal(series: LindstedtSeries, cuts: Cuts, *, derivatives: bool) -> Forms:

@@ -66,7 +66,6 @@ def substitute_multipliers(expression: Any, seeds: Sequence[int | str]) -> Any:
     Omega_2**2/(Omega_2**2 - 4*omega_1**2)
     """
     labels = seed_labels(seeds)
-    chosen = [chosen_symbol(q) for q in labels]
     quotients = {}
     formula = formula_of(expression, "expression")
     for symbol in formula.free_symbols:
@@ -77,10 +76,16 @@ def substitute_multipliers(expression: Any, seeds: Sequence[int | str]) -> Any:
         if len(nu) != len(labels):
             allowed = f"those of a series with the {len(nu)} seeds of {symbol}"
             raise InputError("seeds", labels, allowed, "pass the seeds of the series")
-        drive = sum((n * w for n, w in zip(nu, chosen, strict=True)), start=se.Integer(0))
-        base = chosen_symbol(q) if q in labels else linear_symbol(q)
-        quotients[symbol] = linear_symbol(q) ** 2 / (base**2 - se.expand(drive) ** 2)
+        quotients[symbol] = multiplier_quotient(q, nu, labels)
     return formula.subs(quotients)
+
+
+def multiplier_quotient(q: int, nu: Sequence[int], seeds: Sequence[int]) -> Any:
+    """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2), lambda_q = omega_q^2 of a seed (Eq. Lm)."""
+    linear = linear_symbol(q)
+    base = chosen_symbol(q) if q in seeds else linear
+    drive = se.Add(*(n * chosen_symbol(p) for n, p in zip(nu, seeds, strict=True)))
+    return linear**2 / (base**2 - drive**2)
 
 
 @public

@@ -25,6 +25,7 @@ from symfpu.algebra.residue import ResidueRing, cosine_table
 from symfpu.algebra.selection import NO_SEED, CosineModes, Modes
 from symfpu.chain.chain import Chain
 from symfpu.errors import ResonantDivisor, VanishingResidue
+from symfpu.numbers.arithmetic import mpf
 from symfpu.results.numbers import fifteen_digits
 from symfpu.series.ring_resonances import refuse_resonances
 
@@ -90,7 +91,7 @@ class Float64Divisors(Divisors):
         with mpmath.workdps(60):
             # by wave number, and after them those of the seeds
             linear = [chain.linear_frequency(q) for q in range(chain.N)]
-            chosen = [_quotient(w) for w in frequencies]
+            chosen = [mpf(w) for w in frequencies]
             self._base = self._split([*linear, *chosen])
             self._chosen = self._split(chosen)
             self._numerators = np.array([float(omega**2) for omega in linear])
@@ -410,17 +411,12 @@ def divisor(
         base = chain.linear_frequency(mode)
         for own in (mode, -mode):  # two waves of a ring
             if own in seeds:
-                base = _quotient(frequencies[list(seeds).index(own)])
+                base = mpf(frequencies[list(seeds).index(own)])
                 break
-        return float(base**2 - _quotient(drive) ** 2)
+        return float(base**2 - mpf(drive) ** 2)
 
 
 def _drive(harmonic: Sequence[int], frequencies: Sequence[Fraction]) -> Fraction:
     """nu.omega, exactly."""
     parts = [n * w for n, w in zip(harmonic, frequencies, strict=True)]
     return sum(parts, start=Fraction(0))
-
-
-def _quotient(value: Fraction) -> Any:
-    """A fraction as mpf at the precision of the context."""
-    return mpmath.mpf(value.numerator) / value.denominator

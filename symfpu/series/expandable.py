@@ -25,6 +25,7 @@ from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
 from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.arguments import frequencies_of
+from symfpu.series.closed_forms import multiplier_quotient
 from symfpu.series.named_parts import NamedParts
 from symfpu.series.series import LindstedtSeries, require_series
 from symfpu.series.substitution import leaves_in_balls
@@ -170,21 +171,12 @@ def _with_numbers(
             symbol = multiplier_symbol(*leaf)
             if value is not None:
                 numbers[symbol] = float(value)
-            yield Meaning(symbol, _multiplier(series.seeds, leaf), numbers.get(symbol))
+            meaning = multiplier_quotient(leaf.mode, leaf.harmonic, series.seeds)
+            yield Meaning(symbol, meaning, numbers.get(symbol))
     for name, expression in parts.names:
         if numbers:
             numbers[name] = float(expression.subs(numbers))
         yield Meaning(name, expression, numbers.get(name))
-
-
-def _multiplier(seeds: Sequence[int], leaf: Multiplier) -> Any:
-    """L_q(nu) = Omega_q^2 / (lambda_q - (nu.omega)^2), lambda_q = omega_q^2 of a seed (Eq. Lm)."""
-    linear = linear_symbol(leaf.mode)
-    base = chosen_symbol(leaf.mode) if leaf.mode in seeds else linear
-    drive = se.Add(
-        *(n * chosen_symbol(q) for n, q in zip(leaf.harmonic, seeds, strict=True))
-    )
-    return linear**2 / (base**2 - drive**2)
 
 
 def _reached(expression: Any, known: dict[str, Meaning]) -> dict[str, Meaning]:

@@ -33,7 +33,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import symengine as se
 
-from symfpu.algebra.quotients import monomials_of, quotient_field
+from symfpu.algebra.quotients import expression_of, quotient_field
 from symfpu.algebra.selection import fold
 from symfpu.chain.chain import Chain, require_chain
 from symfpu.chain.length import label_entry, mode_label, mode_of
@@ -396,13 +396,5 @@ def _chebyshev(c: Any, degree: int) -> tuple[list[Any], list[Any]]:
 
 def _rational(value: Any, symbols: Sequence[Any]) -> Any:
     """A rational function as an expression."""
-    top, bottom = (_polynomial(part, symbols) for part in (value.top, value.bottom))
+    top, bottom = (expression_of(part, symbols) for part in (value.top, value.bottom))
     return top / bottom
-
-
-def _polynomial(value: Any, symbols: Sequence[Any]) -> Any:
-    found = []
-    for powers, number in monomials_of(value):
-        monomial = se.Mul(*(x**e for x, e in zip(symbols, powers, strict=True)))
-        found.append(se.Integer(number) * monomial)
-    return se.Add(*found)

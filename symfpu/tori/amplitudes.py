@@ -25,7 +25,7 @@ from symfpu.errors import (
 )
 from symfpu.numbers.arithmetic import GUARD_DIGITS, Numbers, mpf, with_digits
 from symfpu.numbers.public import public
-from symfpu.numbers.typed import decimal, exact, integer
+from symfpu.numbers.typed import decimal, exact
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, listed, shown_number
 from symfpu.results.result import Tabled
@@ -33,6 +33,7 @@ from symfpu.results.table import Table
 from symfpu.series.series import LindstedtSeries, require_any_series
 from symfpu.series.sums import require_frequencies
 from symfpu.tori.from_series import FromSeries, series_behind
+from symfpu.tori.orders import order_argument
 from symfpu.tori.root_certificate import certify_root
 from symfpu.tori.torus import Torus
 
@@ -229,8 +230,8 @@ def solve_amplitudes(
     require_frequencies(require_any_series(series))
     if not series.chain.periodic:  # opposite waves of one frequency stand
         _refuse_commensurable(series)
-    K = order_argument("frequency_order", frequency_order, series)
-    coordinate_order = order_argument("order", order, series)
+    K = order_argument("frequency_order", frequency_order, series.order)
+    coordinate_order = order_argument("order", order, series.order)
     angles = by_seed("phases", phases, series)
     orders = orders_up_to(series, K)
     history = amplitude_history(series)
@@ -291,7 +292,7 @@ def _refuse_commensurable(series: LindstedtSeries) -> None:
 
 def orders_up_to(series: LindstedtSeries, frequency_order: int | None) -> list[int]:
     """The orders of frequency corrections up to one; InputError where there are none."""
-    K = order_argument("frequency_order", frequency_order, series)
+    K = order_argument("frequency_order", frequency_order, series.order)
     orders = [k for k in frequency_orders(series) if k <= K]
     if not orders:
         first = first_shifting_order(series.chain)
@@ -300,19 +301,6 @@ def orders_up_to(series: LindstedtSeries, frequency_order: int | None) -> list[i
         advice = longer if series.order < first else more
         raise InputError("frequency_order", K, allowed, advice)
     return orders
-
-
-def order_argument(name: str, value: int | None, series: LindstedtSeries) -> int:
-    """An order at which a series is cut, by default its own.
-
-    InputError naming the argument if the series ends before.
-    """
-    if value is None:
-        return series.order
-    if integer(value, name, 0) > series.order:
-        allowed = f"0..{series.order}, the series' order"
-        raise InputError(name, value, allowed, "compute a longer series or lower it")
-    return int(value)
 
 
 def by_seed(

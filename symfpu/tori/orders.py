@@ -34,18 +34,26 @@ class Orders:
     def __post_init__(self) -> None:
         whole = order_of(self.order)
         for name, least in (("frequency_order", 1), ("coordinate_order", 0)):
-            given = getattr(self, name)
-            value = whole if given is None else integer(given, name, least)
-            if value > whole:
-                allowed = f"0..{whole}, the order of the series"
-                advice = "compute a longer series or lower it"
-                raise InputError(name, given, allowed, advice)
-            object.__setattr__(self, name, value)
+            cut = order_argument(name, getattr(self, name), whole, least)
+            object.__setattr__(self, name, cut)
         object.__setattr__(self, "order", whole)
 
     def __repr__(self) -> str:
         cuts = f"frequency_order={self.frequency_order}"
         return f"Orders({self.order}, {cuts}, coordinate_order={self.coordinate_order})"
+
+
+def order_argument(name: str, value: int | None, whole: int, least: int = 0) -> int:
+    """An order at which a series is cut, by default its own.
+
+    InputError naming the argument if the series ends before.
+    """
+    if value is None:
+        return whole
+    if integer(value, name, least) > whole:
+        allowed = f"{least}..{whole}, up to the order of the series"
+        raise InputError(name, value, allowed, "compute a longer series or lower it")
+    return int(value)
 
 
 def asked_orders(order: int | Orders) -> Orders:
