@@ -40,7 +40,6 @@ from symfpu.series.coefficient_table import (
     of_amplitudes,
     of_frequency,
 )
-from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.divisors import Float64Divisors
 from symfpu.series.monomials import monomial_space
 from symfpu.series.named_parts import NamedParts
@@ -49,7 +48,6 @@ from symfpu.series.substitution import (
     certified_tables,
     leaves_in_doubles,
     tables_in_doubles,
-    tables_of_residues,
 )
 from symfpu.series.sums import SeriesSums
 
@@ -160,18 +158,16 @@ class LindstedtSeries(SeriesSums, Tabled):
         alpha: Number | None = None,
         beta: Number | None = None,
         digits: int | None = None,
-        point: ResiduePoint | None = None,
     ) -> LindstedtSeries:
         """The numeric series at chosen frequencies, by the program of a universal series.
 
         frequencies : omega of every seed, shape (s,), in the order of `seeds`, exact as in
             `lindstedt`. alpha, beta : couplings other than the chain's, not zero where the
             chain's are not. digits : to so many digits of the largest coefficient of an order,
-            proved by balls; None for doubles. point : a point modulo a prime instead, then
-            frequencies are its own.
+            proved by balls; None for doubles.
 
         Ours. For many points at once see `sample_series`. Raises InputError, ResonantDivisor for
-        frequencies that make a multiplier infinite, VanishingResidue.
+        frequencies that make a multiplier infinite.
 
         >>> from symfpu import Chain, lindstedt
         >>> universal = lindstedt(Chain(N=8, alpha="0.3"), (1,), order=6)
@@ -182,10 +178,6 @@ class LindstedtSeries(SeriesSums, Tabled):
         tables = self.node_tables()
         chain = self._chain_with(alpha, beta)
         none = self.corrections[0]
-        if point is not None:
-            prime, root, omega = point.prime, point.root, point.frequencies
-            values = tables_of_residues(tables, chain, self.seeds, prime, root, omega)
-            return self._with(chain, values, none, ring=RESIDUE.name, point=point)
         chosen = frequencies_of(frequencies, self.seeds)
         if digits is not None:
             found = certified_tables(tables, chain, self.seeds, chosen, digits_of(digits))

@@ -17,11 +17,10 @@ from symfpu.algebra.formulas import Coupling, Multiplier, NodeTable
 from symfpu.algebra.grading import Ints
 from symfpu.algebra.program import Program
 from symfpu.algebra.program_values import tabled, values_in, values_in_doubles
-from symfpu.algebra.residue import cosine_table
 from symfpu.algebra.selection import CosineModes
 from symfpu.algebra.words import IntegerTable
 from symfpu.chain.chain import Chain
-from symfpu.errors import ResonantDivisor, SymfpuError, VanishingResidue
+from symfpu.errors import ResonantDivisor, SymfpuError
 from symfpu.series.divisors import Divisors, vanishes
 from symfpu.series.tables import LOG10_2
 
@@ -130,45 +129,6 @@ def sampled_leaves(
     for number, value in couplings_of(program, chain):
         values[number] = float(value) if relative is None else relative
     return values
-
-
-# residues
-
-
-def tables_of_residues(
-    tables: Tables,
-    chain: Chain,
-    seeds: Sequence[int],
-    prime: int,
-    root: int,
-    omega: Sequence[int],
-) -> list[Floats]:
-    """Tables of nodes modulo a prime, as doubles in -p/2 .. p/2. Raises VanishingResidue."""
-    program = tables[0].program
-    cosines = cosine_table(chain.N, prime, root)
-    leaves: list[Any] = [None] * len(program.symbols)
-    for order, found in multipliers_by_order(program, chain.degree_step).items():
-        for number, mode, harmonic in zip(*(part.tolist() for part in found), strict=True):
-            own = (2 - 2 * cosines[2 * mode]) % prime
-            base = omega[seeds.index(mode)] ** 2 if mode in seeds else own
-            drive = sum(n * w for n, w in zip(harmonic, omega, strict=True))
-            divisor = (base - drive * drive) % prime
-            if divisor == 0:
-                raise VanishingResidue(prime, order)
-            leaves[number] = flint.nmod(own, prime) / flint.nmod(divisor, prime)
-    for number, value in couplings_of(program, chain):
-        leaves[number] = flint.nmod(value.numerator, prime) / flint.nmod(
-            value.denominator, prime
-        )
-    return [
-        _centered(table, values_in(program, leaves, table.nodes), prime) for table in tables
-    ]
-
-
-def _centered(table: NodeTable, values: NDArray[np.object_], prime: int) -> Floats:
-    whole = np.array([int(value) % prime for value in values.ravel()], dtype=np.int64)
-    centered = np.where(whole > prime // 2, whole - prime, whole)
-    return centered.reshape(table.shape).astype(np.float64)
 
 
 # balls
