@@ -71,3 +71,24 @@ def rescaled(polynomial: Polynomial, slopes: list[Any], sign: float) -> Polynomi
             factor = factor * slope**e
         result[exponents] = coefficient * factor
     return result
+
+
+def roots_by_order(
+    squares: Sequence[Sequence[Polynomial]],
+    linear: Sequence[Any],
+    slopes: list[Any],
+    *,
+    negative: bool,
+) -> list[list[Polynomial]]:
+    """mu^k omega^(k) of every seed, by order and seed, in the variables y_i / slope_i.
+
+    squares : [omega^2]^(k) by seed and order. linear : Omega of the seeds. negative : whether mu is.
+    """
+    by_seed = []
+    for own, omega in zip(squares, linear, strict=True):
+        roots = []
+        for k, polynomial in enumerate(square_root(own, omega)):
+            sign = -1.0 if negative and k % 2 else 1.0
+            roots.append(rescaled(polynomial, slopes, sign))
+        by_seed.append(roots)
+    return [list(row) for row in zip(*by_seed, strict=True)]

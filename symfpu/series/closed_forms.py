@@ -253,15 +253,11 @@ def _tables(series: LindstedtSeries) -> list[NodeTable]:
 
 def _same_order(a: LindstedtSeries, b: LindstedtSeries, k: int) -> bool:
     """All polynomials of an order, one by one."""
-    tables = [(s.coordinates[k], list(_modes(s))) for s in (a, b)]
+    tables = [(s.coordinates[k], list(s.modes)) for s in (a, b)]
     if k:
         tables += [(s.corrections[k], list(s.seeds)) for s in (a, b)]
     polynomials = [_polynomials(table, columns) for table, columns in tables]
     return polynomials[0::2] == polynomials[1::2]
-
-
-def _modes(series: LindstedtSeries) -> Sequence[int]:
-    return series.modes if isinstance(series, SeriesForAllN) else range(1, series.chain.N)
 
 
 def _polynomials(table: NodeTable, columns: Sequence[int]) -> dict[tuple[int, int], Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -66,6 +67,11 @@ class SeriesCoefficients:
     def omega(self) -> dict[int, Fraction]:
         """The frequencies by seed, as the amplitudes are; exact, and none where none are chosen."""
         return dict(zip(self.seeds, self.frequencies or (), strict=False))
+
+    @property
+    def modes(self) -> Sequence[int]:
+        """The modes that it has coordinates of."""
+        return self.chain.mode_numbers
 
     @cached_property
     def space(self) -> Modes:

@@ -23,7 +23,6 @@ from symfpu.errors import InputError
 from symfpu.notebook import Meaning, OpenableFormulas
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number
-from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.arguments import frequencies_of
 from symfpu.series.closed_forms import multiplier_quotient
 from symfpu.series.named_parts import NamedParts
@@ -143,8 +142,7 @@ def _meanings(
         yield Meaning(free, f"the phase of mode {q}, free")
         number = float(chosen[q]) if q in chosen else None
         yield Meaning(chosen_symbol(q), f"the chosen frequency of mode {q}", number)
-    modes = series.modes if isinstance(series, SeriesForAllN) else range(1, chain.N)
-    for q in modes:
+    for q in series.modes:
         linear = None if chain.symbolic else float(chain.linear_frequency(q))
         yield Meaning(linear_symbol(q), _linear_frequency(q), linear)
     yield from _with_numbers(series, parts, omega)

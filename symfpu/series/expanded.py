@@ -21,7 +21,6 @@ from typing import Any
 from symfpu.algebra.formulas import Multiplier, NodeTable
 from symfpu.algebra.truncated import Truncated, variables
 from symfpu.files.progress import Progress, unheard
-from symfpu.series.all_lengths import SeriesForAllN
 from symfpu.series.series import LindstedtSeries
 
 Columns = Mapping[tuple[int, ...], Mapping[int, Truncated]]
@@ -41,14 +40,6 @@ class ExpandedSeries:
         one: Any,
     ) -> None:
         self.series, self.linear, self.squares, self.one = series, linear, squares, one
-
-    @property
-    def modes(self) -> Sequence[int]:
-        """Those of the columns of coordinates."""
-        series = self.series
-        return (
-            series.modes if isinstance(series, SeriesForAllN) else series.chain.mode_numbers
-        )
 
     def frequency_ratios(self, top: int, tell: Progress = unheard) -> list[Truncated]:
         """omega_i / Omega_i as power series in y, cut at a degree of 1 or more.
@@ -102,7 +93,7 @@ class ExpandedSeries:
         for k in range(order + 1):
             for nu, row, line in self._lines(omega, y, k):
                 columns = found.setdefault(nu, {})
-                for q, value in zip(self.modes, line, strict=True):
+                for q, value in zip(self.series.modes, line, strict=True):
                     if value:
                         term = monomial_of(y, row) * _as_long(value, y[0].top)
                         columns[q] = columns[q] + term if q in columns else y[0] * 0 + term

@@ -381,8 +381,7 @@ def _signed_sums(series: LindstedtSeries) -> dict[int, tuple[int, ...]]:
         if _size(j) <= degree:
             total = sum(n * m for n, m in zip(j, numbers, strict=True))
             found.setdefault(fold(total, N), j)
-    names = getattr(series, "modes", range(1, N))
-    return {q: found[mode_of(q, N)] for q in names if mode_of(q, N) in found}
+    return {q: found[mode_of(q, N)] for q in series.modes if mode_of(q, N) in found}
 
 
 def _chebyshev(c: Any, degree: int) -> tuple[list[Any], list[Any]]:

@@ -17,8 +17,7 @@ from symfpu.algebra.polynomials import (
     Polynomial,
     evaluate,
     powers_of,
-    rescaled,
-    square_root,
+    roots_by_order,
 )
 from symfpu.chain.chain import linear_by_wave
 from symfpu.errors import InputError
@@ -237,14 +236,12 @@ class SeriesSums(SeriesCoefficients):
     def _frequency_polynomials(self) -> list[list[Polynomial]]:
         """mu^k omega_q^(k) as polynomials in A^2, by order and seed, in mpf."""
         slopes = [f**2 for f in self.seed_factors]
-        by_seed = []
-        for i, q in enumerate(self.seeds):
-            squares = [self.squared_polynomial(i, k) for k in range(self.order + 1)]
-            roots = square_root(squares, self._linear(q))
-            by_seed.append(
-                [rescaled(p, slopes, self._sign(k)) for k, p in enumerate(roots)]
-            )
-        return [list(row) for row in zip(*by_seed, strict=True)]
+        squares = [
+            [self.squared_polynomial(i, k) for k in range(self.order + 1)]
+            for i in range(len(self.seeds))
+        ]
+        linear = list(map(self._linear, self.seeds))
+        return roots_by_order(squares, linear, slopes, negative=self.chain.mu < 0)
 
     def _frequency_doubles(self, squares: Floats, top: int) -> tuple[Floats, Floats]:
         linear = self._linear_of_seeds(DOUBLES)

@@ -20,8 +20,7 @@ from symfpu.algebra.polynomials import (
     Polynomial,
     evaluate,
     powers_of,
-    rescaled,
-    square_root,
+    roots_by_order,
 )
 from symfpu.chain.chain import Chain
 from symfpu.series.series import LindstedtSeries
@@ -112,15 +111,8 @@ def frequency_balls(series: LindstedtSeries) -> list[list[Polynomial]]:
         half_angle = flint.fmpq(q, 2 * chain.N)
         linear.append(2 * flint.arb.sin_pi_fmpq(half_angle))
     slopes = [(kappa * w / 2) ** 2 for w in linear]
-    by_seed = []
-    for i, w in enumerate(linear):
-        squares = _squared_frequency(series, i, w)
-        roots = []
-        for k, polynomial in enumerate(square_root(squares, w)):
-            sign = -1.0 if chain.mu < 0 and k % 2 else 1.0
-            roots.append(rescaled(polynomial, slopes, sign))
-        by_seed.append(roots)
-    return [list(row) for row in zip(*by_seed, strict=True)]
+    squares = [_squared_frequency(series, i, w) for i, w in enumerate(linear)]
+    return roots_by_order(squares, linear, slopes, negative=chain.mu < 0)
 
 
 def _coupling_ball(chain: Chain) -> Any:
