@@ -82,7 +82,7 @@ def roots_by_order(
 ) -> list[list[Polynomial]]:
     """mu^k omega^(k) of every seed, by order and seed, in the variables y_i / slope_i.
 
-    squares : [omega^2]^(k) by seed and order. linear : Omega of the seeds. negative : whether mu is.
+    squares : [omega^2]^(k) by seed and order. linear : Omega of seeds. negative : whether mu is.
     """
     by_seed = []
     for own, omega in zip(squares, linear, strict=True):
