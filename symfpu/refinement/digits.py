@@ -24,7 +24,7 @@ from symfpu.chain.projections.projection import Projection
 from symfpu.chain.tension_terms import has_terms, terms
 from symfpu.errors import InputError
 from symfpu.files.locking import one_run
-from symfpu.files.progress import NO_FRACTION, Progress
+from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.arithmetic import GUARD_DIGITS, from_integers, mpf, with_digits
 from symfpu.numbers.typed import integer
 from symfpu.refinement.guesses import frequency_shifts
@@ -116,11 +116,13 @@ class IterativeRefinement(Origin):
 class Guess(NamedTuple):
     """Where refinement begins: a torus in doubles or in digits, and what is to fix it.
 
-    steps : made so far.
+    report : called with every step. save : with what is reached after it. steps : made so far.
     """
 
     torus: Torus
     prescribed: Prescribed
+    report: Progress = unheard
+    save: Save = no_checkpoint
     steps: int = 0
 
     @property
@@ -163,30 +165,26 @@ def require_digits(chain: Chain, digits: int, argument: str) -> None:
 
 
 def torus_to_digits(
-    guess: Guess, digits: int, path: Path | None, report: Progress
+    guess: Guess, digits: int, path: Path | None
 ) -> Torus[IterativeRefinement]:
     """The torus near the guess; a run with a file goes on from what that holds.
 
     Raises Failure, and InputError, also for a file of another run or in use.
     """
     if path is None:
-        return precise_torus(guess, digits, report)
+        return precise_torus(guess, digits)
     with one_run(path):
         chain, seeds = guess.torus.chain, guess.torus.seeds
         file = RefinementFile(path, chain, digits, seeds, guess.prescribed.by_name())
-        before = file.read()
+        guess, before = guess._replace(save=file.write), file.read()
         if before is not None:
             with mpmath.workprec(before.bits + GUARD_BITS):
                 guess = guess.moved(before)
-        return precise_torus(guess, digits, report, file.write)
+        return precise_torus(guess, digits)
 
 
-def precise_torus(
-    guess: Guess, digits: int, report: Progress, save: Save = no_checkpoint
-) -> Torus[IterativeRefinement]:
+def precise_torus(guess: Guess, digits: int) -> Torus[IterativeRefinement]:
     """The torus near the guess with so many digits; raises Failure, and InputError for too many.
-
-    save : called with what is reached after every step.
 
     Half of the digits first: from their fall-off the harmonics of all are known better, and fewer
     steps need all of them. Then harmonics are added until none that is left out has an error
@@ -198,12 +196,12 @@ def precise_torus(
     _require_room(guess, digits)
     for fewer in stages[:-1]:
         with mpmath.workdps(fewer + CARRIED_DIGITS):
-            problem = TorusProblem(guess, _fitted(guess, fewer), fewer, report, save)
-            converge(problem, fewer, report)
+            problem = TorusProblem(guess, _fitted(guess, fewer), fewer)
+            converge(problem, fewer, guess.report)
             guess = problem.guess(fewer)
     with mpmath.workdps(digits + CARRIED_DIGITS):
-        start = TorusProblem(guess, _fitted(guess, digits), digits, report, save)
-        problem, left = refined(start, digits, report)
+        start = TorusProblem(guess, _fitted(guess, digits), digits)
+        problem, left = refined(start, digits, guess.report)
         return problem.result(left)
 
 
@@ -252,11 +250,8 @@ class TorusProblem(TruncatedProblem):
     Made at the working precision of mpmath.
     """
 
-    def __init__(
-        self, guess: Guess, harmonics: Ints, digits: int, report: Progress, save: Save
-    ) -> None:
-        self.start, self.harmonics = guess, harmonics
-        self.digits, self.report, self.save = digits, report, save
+    def __init__(self, guess: Guess, harmonics: Ints, digits: int) -> None:
+        self.start, self.harmonics, self.digits = guess, harmonics, digits
         self.steps = guess.steps
         torus = guess.torus
         self.equation = InvarianceEquation(torus.chain, torus.seeds, harmonics)
@@ -277,7 +272,7 @@ class TorusProblem(TruncatedProblem):
             self.coefficients[self._seeds] = [fixed(a) for a in held]
         self._amplitudes = self.coefficients[self._seeds]
         self._set_jacobian(doubles)
-        report(f"{len(harmonics)} harmonics, {self.bits} bits", NO_FRACTION)
+        guess.report(f"{len(harmonics)} harmonics, {self.bits} bits", NO_FRACTION)
 
     def _known(self) -> Any:
         """The coefficients of the guess at the harmonics, (H, C), 0 of others."""
@@ -330,7 +325,7 @@ class TorusProblem(TruncatedProblem):
 
     def after_step(self, digits: float) -> None:
         self._require_near()
-        self.save(self._checkpoint(math.floor(max(1, min(self.digits, digits)))))
+        self.start.save(self._checkpoint(math.floor(max(1, min(self.digits, digits)))))
 
     def _require_near(self) -> None:
         """Failure where the amplitude of a seed has left that of the guess."""
@@ -360,7 +355,7 @@ class TorusProblem(TruncatedProblem):
         guess = self.guess(self.digits)
         more = self.harmonics, _fitted(guess, self.digits), harmonics
         every = np.unique(np.concatenate(more), axis=0)
-        return TorusProblem(guess, every, self.digits, self.report, self.save)
+        return TorusProblem(guess, every, self.digits)
 
     def truncation(self) -> Truncation:
         """At all harmonics of a box a quarter larger; its residual is the bound of the result."""

@@ -262,8 +262,8 @@ def refine(
     path = None if file is None else checkpoint_path(file)
     near = _near(torus, prescribed, how)
     try:
-        guess = Guess(near, prescribed)
-        return torus_to_digits(guess, digits, path, progress or unheard)
+        guess = Guess(near, prescribed, progress or unheard)
+        return torus_to_digits(guess, digits, path)
     except Failure as failure:
         advice = DEGENERATE if prescribed.held_frequencies else NEARER
         raise NoTorus(str(failure), near, near.residual(), advice) from None

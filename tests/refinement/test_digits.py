@@ -12,7 +12,7 @@ from symfpu import BundleError, Chain, InputError, NoTorus, actions, load, refin
 from symfpu.refinement import iterative_refinement
 from symfpu.refinement.digits import Guess, TorusProblem
 from symfpu.refinement.prescribed import Frequencies
-from symfpu.refinement.refinement_file import no_checkpoint, whole, words
+from symfpu.refinement.refinement_file import whole, words
 from tests.oracles.oscillators import duffing
 from tests.tolerances import SPOILT_LEAST, SPOILT_MOST
 
@@ -164,7 +164,7 @@ def test_a_wrong_digit_is_seen():
     torus = small(20)
     guess = Guess(torus, Frequencies(torus.chain, torus.seeds, torus.frequencies))
     with mpmath.workdps(40):
-        problem = TorusProblem(guess, torus.harmonics, 20, unheard, no_checkpoint)
+        problem = TorusProblem(guess, torus.harmonics, 20)
         before = problem.truncation()
         problem.coefficients[problem.equation.seed_rows[0], 0] += problem.largest >> 50
         spoilt = problem.truncation()
@@ -177,7 +177,7 @@ def test_the_bound_of_a_breather_sees_a_digit_in_the_thirtieth_place():
     orbit = symfpu.torus(Chain(6, alpha="0.4", beta="0.2"), (5,), amplitudes={5: "0.6"})
     with mpmath.workdps(60):
         guess = Guess(orbit, Frequencies(orbit.chain, orbit.seeds, orbit.frequencies))
-        problem = TorusProblem(guess, np.arange(61)[:, None], 30, unheard, no_checkpoint)
+        problem = TorusProblem(guess, np.arange(61)[:, None], 30)
         iterative_refinement.converge(problem, 40, unheard)
         problem.coefficients[3, 4] += problem.largest >> 100
         spoilt = problem.result(problem.truncation())

@@ -10,8 +10,7 @@ import symfpu
 from symfpu import Chain, InputError, actions, load, refine, save, toda_torus, unfold
 from symfpu.refinement.digits import Guess, TorusProblem
 from symfpu.refinement.prescribed import Frequencies
-from symfpu.refinement.refinement_file import no_checkpoint
-from tests.refinement.test_digits import ten, unheard
+from tests.refinement.test_digits import ten
 from tests.refinement.test_ring_tori import TODA, of_series, seeds_alone
 from tests.tolerances import NEWTON_TWIST, ORBIT
 from tests.tori.test_ring_torus import ring
@@ -116,7 +115,7 @@ def test_a_wrong_digit_is_seen():
     torus = precise("two", 20)
     with mpmath.workdps(40):
         guess = Guess(torus, Frequencies(torus.chain, torus.seeds, torus.frequencies))
-        problem = TorusProblem(guess, torus.harmonics, 20, unheard, no_checkpoint)
+        problem = TorusProblem(guess, torus.harmonics, 20)
         before = problem.truncation()
         problem.coefficients[problem.equation.seed_rows[0], 0] += problem.largest >> 50
         spoilt = problem.truncation()
