@@ -6,14 +6,11 @@ contracts it (docs/existence.md): there is one true orbit of this frequency in i
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import compress
-from pathlib import Path
 from typing import Any
 
 import flint
@@ -37,14 +34,13 @@ from symfpu.certified.rounded_orbit import RoundedOrbit, rounded_orbit
 from symfpu.certified.segment import Line, direction
 from symfpu.chain.chain import Chain
 from symfpu.errors import InputError, SymfpuError
-from symfpu.files.writing import write_text
 from symfpu.numbers.one_sided import above, below, rational
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, energy_of, exact
+from symfpu.proofs.certified import Certified
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, chain_fields, seeds_field
 from symfpu.results.numbers import fifteen_digits
-from symfpu.results.result import BY_CERTIFICATE, Tabled
 from symfpu.results.table import Table
 from symfpu.series.arguments import digits_of
 from symfpu.tori.torus import Torus
@@ -83,7 +79,7 @@ class NoExistenceProof(SymfpuError):
 
 @public
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ExistenceProof(Tabled):
+class ExistenceProof(Certified):
     """A theorem: the chain has a periodic orbit of this frequency near the computed one.
 
     chain, seed : the model and the mode; of a ring the orbit is a travelling wave.
@@ -110,8 +106,6 @@ class ExistenceProof(Tabled):
     computed one, the only one within ...; A = 0.4051586230... +- ..., H = 0.01279842208... +- ...)
     """
 
-    not_kept = BY_CERTIFICATE
-
     chain: Chain
     seed: int
     fixed: str
@@ -133,6 +127,9 @@ class ExistenceProof(Tabled):
     block: int
     digits: int
     body: dict[str, Any] = field(repr=False)
+
+    def _certificate_body(self) -> dict[str, Any]:
+        return self.body | packed_entries(self.body)
 
     def _lines(self, width: int | None) -> Iterator[str]:
         """The theorem, the intervals, and the bounds."""
@@ -229,21 +226,6 @@ class ExistenceProof(Tabled):
         with mpmath.workprec(places + 53):
             middle = mpmath.mpf(exact_middle.numerator) / exact_middle.denominator
             return f"omega = {interval_text(middle, self.frequency_radius)}"
-
-    def certificate(self) -> dict[str, Any]:
-        """What `symfpu verify` needs to check the theorem again: integers and strings."""
-        body = self.body | packed_entries(self.body)
-        text = json.dumps(body, sort_keys=True, separators=(",", ":"))
-        digest = hashlib.sha256(text.encode()).hexdigest()
-        return body | {"digest": digest}
-
-    def write(self, path: Path | str) -> None:
-        """Write the certificate to a path as JSON, whole or not at all.
-
-        Raises InputError if the file cannot be written.
-        """
-        text = json.dumps(self.certificate(), separators=(",", ":"))
-        write_text(Path(path), text + "\n")
 
     def _table(self) -> Table:
         """One row for each bound of the theorem."""

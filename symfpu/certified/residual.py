@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
-from pathlib import Path
 from typing import Any, Protocol
 
 import mpmath
@@ -23,13 +20,12 @@ from symfpu.certified.series import Series
 from symfpu.certified.torus_energy import EnergyBall, energy_of
 from symfpu.chain.chain import Chain
 from symfpu.files.progress import Progress, unheard
-from symfpu.files.writing import write_text
 from symfpu.numbers.arithmetic import with_digits
 from symfpu.numbers.one_sided import above
 from symfpu.numbers.public import public
+from symfpu.proofs.certified import Certified
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, chain_fields, exact_by_seed, seeds_field
-from symfpu.results.result import BY_CERTIFICATE, Tabled
 from symfpu.results.table import Table
 from symfpu.tori.torus import Torus
 
@@ -84,21 +80,9 @@ def bound_text(x: Any) -> str:
     return str(mpmath.nstr(number, BOUND_DIGITS))
 
 
-def certificate_of(body: Body) -> Body:
-    """With a digest of everything else."""
-    text = json.dumps(body, sort_keys=True, separators=(",", ":"))
-    return body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
-
-
-def write_certificate(body: Body, path: Path | str) -> None:
-    """As JSON, whole or not at all; raises InputError if the file cannot be written."""
-    text = json.dumps(certificate_of(body), separators=(",", ":"))
-    write_text(Path(path), text + "\n")
-
-
 @public
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ResidualProof(Tabled):
+class ResidualProof(Certified):
     """A theorem: what a torus leaves of the equations of motion, at all angles.
 
     chain, seeds, frequencies : the model and the angles; frequencies exact.
@@ -120,8 +104,6 @@ class ResidualProof(Tabled):
     ... of every particle at all angles, H within ..., ... of the largest acceleration)
     """
 
-    not_kept = BY_CERTIFICATE
-
     chain: Chain
     seeds: tuple[int, ...]
     frequencies: tuple[Fraction, ...]
@@ -133,6 +115,9 @@ class ResidualProof(Tabled):
     harmonics: int
     digits: int
     body: Body = field(repr=False)
+
+    def _certificate_body(self) -> dict[str, Any]:
+        return self.body
 
     def _lines(self, width: int | None) -> Iterator[str]:
         """The theorem."""
@@ -182,17 +167,6 @@ class ResidualProof(Tabled):
     def omega(self) -> dict[int, Fraction]:
         """The frequencies by seed, exact."""
         return dict(zip(self.seeds, self.frequencies, strict=True))
-
-    def certificate(self) -> Body:
-        """What `symfpu verify` needs to check the theorem again: integers and strings."""
-        return certificate_of(self.body)
-
-    def write(self, path: Path | str) -> None:
-        """Write the certificate to a path as JSON, whole or not at all.
-
-        Raises InputError if the file cannot be written.
-        """
-        write_certificate(self.body, path)
 
     def _table(self) -> Table:
         """One row for each particle."""

@@ -7,14 +7,11 @@ docs/stability-proofs.md.
 from __future__ import annotations
 
 import cmath
-import hashlib
-import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,15 +32,14 @@ from symfpu.certified.rounded_orbit import RoundedOrbit
 from symfpu.certified.sectors import Sector, sectors_of
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
-from symfpu.files.writing import write_text
 from symfpu.numbers.counted import counted
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal
+from symfpu.proofs.certified import Certified
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, chain_fields, seeds_field
 from symfpu.results.numbers import fifteen_digits
-from symfpu.results.result import BY_CERTIFICATE, Tabled
 from symfpu.results.table import Table
 from symfpu.tori.torus import Torus
 
@@ -115,7 +111,7 @@ MOST_GAPS = 5  # that readers see
 
 @public
 @dataclass(frozen=True, eq=False, kw_only=True)
-class StabilityProof(Tabled):
+class StabilityProof(Certified):
     """A theorem: a breather is linearly stable, or unstable.
 
     existence : the theorem on the orbit. stable : which of the two. exponents : those enclosed,
@@ -130,13 +126,14 @@ class StabilityProof(Tabled):
     smallest gap 0.0110... omega)
     """
 
-    not_kept = BY_CERTIFICATE
-
     existence: ExistenceProof
     stable: bool
     exponents: tuple[ProvedExponent, ...]
     gaps: tuple[Gap, ...]
     body: dict[str, Any] = field(repr=False)
+
+    def _certificate_body(self) -> dict[str, Any]:
+        return self.body
 
     def _lines(self, width: int | None) -> Iterator[str]:
         """The theorem, the smallest gaps or the growth, and the bounds."""
@@ -220,19 +217,6 @@ class StabilityProof(Tabled):
             f"{orbit} {where} is linearly stable: all multipliers lie on the unit circle, 1 is "
             f"double and all others are simple within their symmetry sector{gap}"
         )
-
-    def certificate(self) -> dict[str, Any]:
-        """What `symfpu verify` needs to check the theorem again: integers and strings."""
-        text = json.dumps(self.body, sort_keys=True, separators=(",", ":"))
-        return self.body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
-
-    def write(self, path: Path | str) -> None:
-        """Write the certificate to a path as JSON, whole or not at all.
-
-        Raises InputError if the file cannot be written.
-        """
-        text = json.dumps(self.certificate(), separators=(",", ":"))
-        write_text(Path(path), text + "\n")
 
     def _table(self) -> Table:
         """One row for each exponent."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -22,7 +21,6 @@ from symfpu.certified.residual import (
     SLACK,
     Body,
     bound_text,
-    certificate_of,
     cosine_rows,
     dyadic_pair,
     residual_proof,
@@ -31,7 +29,6 @@ from symfpu.certified.residual import (
     torus_proof_fields,
     torus_text,
     torus_words,
-    write_certificate,
 )
 from symfpu.certified.rounded_torus import RoundedTorus, residual_of, rounded_torus
 from symfpu.chain.chain import Chain
@@ -40,10 +37,10 @@ from symfpu.files.progress import NO_FRACTION, Progress, unheard
 from symfpu.numbers.one_sided import above, below
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import Number, decimal, exact
+from symfpu.proofs.certified import Certified
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field
 from symfpu.results.numbers import fifteen_digits
-from symfpu.results.result import BY_CERTIFICATE, Tabled
 from symfpu.results.table import Table
 from symfpu.tori.torus import Torus
 
@@ -87,7 +84,7 @@ def told_apart(larger: float, smaller: float) -> tuple[str, str]:
 
 @public
 @dataclass(frozen=True, eq=False, kw_only=True)
-class StayProof(Tabled):
+class StayProof(Certified):
     """A theorem: every orbit that starts on the computed torus stays near it for so long.
 
     chain, seeds, frequencies : the model and the angles; frequencies exact.
@@ -111,8 +108,6 @@ class StayProof(Tabled):
     omega t; at most t <= ...)
     """
 
-    not_kept = BY_CERTIFICATE
-
     chain: Chain
     seeds: tuple[int, ...]
     frequencies: tuple[Fraction, ...]
@@ -132,6 +127,9 @@ class StayProof(Tabled):
     harmonics: int
     digits: int
     body: Body = field(repr=False)
+
+    def _certificate_body(self) -> dict[str, Any]:
+        return self.body
 
     def _lines(self, width: int | None) -> Iterator[str]:
         """The theorem, and what it follows from."""
@@ -197,17 +195,6 @@ class StayProof(Tabled):
         """
         d = distance_of(self.growth, time_of(time))
         return shown(d * self.reach)
-
-    def certificate(self) -> Body:
-        """What `symfpu verify` needs to check the theorem again: integers and strings."""
-        return certificate_of(self.body)
-
-    def write(self, path: Path | str) -> None:
-        """Write the certificate to a path as JSON, whole or not at all.
-
-        Raises InputError if the file cannot be written.
-        """
-        write_certificate(self.body, path)
 
     def _table(self) -> Table:
         """Distances at powers of 10 of the time, up to the longest."""

@@ -8,13 +8,10 @@ between integer polynomials in the L_q(nu); what neither shows is reported as un
 
 from __future__ import annotations
 
-import hashlib
-import json
 import random
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -26,13 +23,12 @@ from symfpu.chain.powers import powers_of
 from symfpu.chain.propagation import coupled_modes, excitation_sequence
 from symfpu.errors import InputError, SymfpuError, VanishingResidue
 from symfpu.files.progress import Progress
-from symfpu.files.writing import write_text
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, integer_between, length_of, order_of, seed_modes
+from symfpu.proofs.certified import Certified
 from symfpu.proofs.seed_sums import modes_of_one_parity
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field, fields_of, listed
-from symfpu.results.result import Tabled
 from symfpu.results.table import Columns, Table, joined
 from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.force import force_numbers
@@ -129,7 +125,7 @@ class RuleException:
 
 @public
 @dataclass(frozen=True)
-class PropagationProof(Tabled):
+class PropagationProof(Certified):
     """The Proposition's D_k beside the actual ones up to an order, and everything that shows it.
 
     Made by `prove_propagation`.
@@ -152,6 +148,9 @@ class PropagationProof(Tabled):
        mode  rule  actual  agrees undecided_orders
     6     7     1       2   False
     """
+
+    not_kept = ""  # a file of results holds it, too
+    layout: ClassVar[dict[str, Any]] = {"indent": 1}
 
     N: int
     model: str
@@ -213,14 +212,11 @@ class PropagationProof(Tabled):
         orders = {q: k for k, modes in enumerate(self.rule) for q in modes}
         return frozenset(modes_of_one_parity(self.N, self.model, self.seeds, orders))
 
-    def certificate(self) -> dict[str, Any]:
-        """The certificate as plain integers, strings, lists and dictionaries.
-
-        `symfpu.proofs.check_propagation` checks it by another route.
-        """
+    def _certificate_body(self) -> dict[str, Any]:
+        """`symfpu.proofs.check_propagation` checks it by another route."""
         rule = [list(modes) for modes in self.rule]
         actual = [list(modes) for modes in self.actual]
-        body: dict[str, Any] = {
+        return {
             "format": FORMAT,
             "schema": SCHEMA if self.potential is None else POTENTIALS,
             "N": self.N,
@@ -236,9 +232,6 @@ class PropagationProof(Tabled):
             "excited": [w.record() for w in self.excited],
             "vanishing": [v.record() for v in self.vanishing],
         }
-        text = json.dumps(body, sort_keys=True, separators=(",", ":"))
-        digest = hashlib.sha256(text.encode()).hexdigest()
-        return body | {"digest": digest}
 
     def _law_record(self) -> dict[str, Any]:
         """The model, or the potential with the coefficients c_3, c_4, ... up to the last order."""
@@ -249,14 +242,6 @@ class PropagationProof(Tabled):
         coefficients = [str(self.potential.coefficient(n)) for n in degrees]
         text = self.potential.text
         return {"potential": text, "step": step, "coefficients": coefficients}
-
-    def write(self, path: Path | str) -> None:
-        """Write the certificate to a path as JSON, whole or not at all.
-
-        Raises InputError if the file cannot be written.
-        """
-        text = json.dumps(self.certificate(), indent=1)
-        write_text(Path(path), text + "\n")
 
     def _table(self) -> Table:
         """One row for each mode: its order by the rule, its actual one, what is not decided."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
@@ -17,9 +15,9 @@ import numpy as np
 
 from symfpu.errors import InputError
 from symfpu.files.progress import Progress, unheard
-from symfpu.files.writing import write_text
 from symfpu.numbers.public import public
 from symfpu.numbers.typed import integer, length_of, order_of, seed_modes
+from symfpu.proofs.certified import Certified
 from symfpu.proofs.decided_file import DecidedFile
 from symfpu.proofs.every_length import DecidedFlat, decided_flat
 from symfpu.proofs.families import equation_text, mode_text
@@ -28,7 +26,6 @@ from symfpu.proofs.seed_sums import without_odd_sums
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field
 from symfpu.results.numbers import json_value
-from symfpu.results.result import Tabled
 from symfpu.results.table import Columns, Table
 from symfpu.sweeps.workers import executor_of
 
@@ -61,7 +58,7 @@ class ExceptionalFlat:
 
 @public
 @dataclass(frozen=True)
-class RuleForAllN(Tabled):
+class RuleForAllN(Certified):
     """The Proposition for all sets of s seeds and every N, up to an order: a theorem.
 
     Made by `prove_for_all_N`.
@@ -74,6 +71,8 @@ class RuleForAllN(Tabled):
     >>> prove_for_all_N("beta", 2, 1)
     RuleForAllN(beta, 2 seeds, order 1: refuted on 8 of 98 flats, on the others proved)
     """
+
+    not_kept = ""  # a file of results holds it, too
 
     model: str
     seeds_number: int
@@ -169,14 +168,11 @@ class RuleForAllN(Tabled):
         """What is proved, in one sentence."""
         return theorem_text(self)
 
-    def certificate(self) -> dict[str, Any]:
-        """The certificate as plain integers, strings, lists and dictionaries.
-
-        `symfpu.proofs.check_every_length` checks it by another route.
-        """
+    def _certificate_body(self) -> dict[str, Any]:
+        """`symfpu.proofs.check_every_length` checks it by another route."""
         listed = self._listed()
         points = [point for found in listed for point in found.points]
-        body: dict[str, Any] = {
+        return {
             "format": FORMAT,
             "schema": SCHEMA,
             "model": self.model,
@@ -192,8 +188,6 @@ class RuleForAllN(Tabled):
             "points": [[p.prime, p.root, *p.frequencies] for p in points],
             "witnesses": list(_witness_records(listed)),
         }
-        text = json.dumps(body, sort_keys=True, separators=(",", ":"))
-        return body | {"digest": hashlib.sha256(text.encode()).hexdigest()}
 
     def _listed(self) -> list[DecidedFlat]:
         """Of which something has to be said: a checker finds and decides the others by itself."""
@@ -202,13 +196,6 @@ class RuleForAllN(Tabled):
             for found in self.decided
             if found.exceptions or found.witnesses or found.undecided
         ]
-
-    def write(self, path: Path | str) -> None:
-        """Write the certificate to a path as JSON, whole or not at all.
-
-        Raises InputError if the file cannot be written.
-        """
-        write_text(Path(path), json.dumps(self.certificate(), separators=(",", ":")) + "\n")
 
     def _table(self) -> Table:
         """One row for each flat."""

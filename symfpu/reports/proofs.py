@@ -1,4 +1,4 @@
-"""Proofs and sweeps of the propagation rule, for JSON and as text."""
+"""Certificates that were read, for JSON."""
 
 from __future__ import annotations
 
@@ -15,10 +15,9 @@ from symfpu.proofs import (
     check_torus,
     theorem,
 )
-from symfpu.proofs.certificates import PropagationProof
+from symfpu.proofs.certificates import EVIDENCE, PropagationProof
 from symfpu.proofs.theorem import RuleForAllN
 
-VERDICTS = ("proved", "refuted", "undecided")
 CERTIFIED = {
     certificates.FORMAT: PropagationProof.__name__,
     theorem.FORMAT: RuleForAllN.__name__,
@@ -26,13 +25,12 @@ CERTIFIED = {
     check_stability.FORMAT: StabilityProof.__name__,
     check_torus.FORMAT: ResidualProof.__name__,
 }
-EVIDENCE = ("excited", "vanishing", "points", "coefficients", "digest")
 
 Json = dict[str, Any]
 
 
 def certificate_record(certificate: Json) -> Json:
-    """The same of a certificate that was read, of any kind; of others what is no list or table."""
+    """Of a proof of the rule all but the evidence; of other theorems what is no list or table."""
     kind = (
         StayProof.__name__ if certificate.get("stay") else CERTIFIED[certificate["format"]]
     )
