@@ -340,7 +340,7 @@ class _Family:
     def __init__(self, chain: Chain, seeds: tuple[int, ...], orders: Orders) -> None:
         self.chain, self.seeds, self.orders = chain, seeds, orders
         self.linear = chain.frequencies()[np.array(seeds) - 1]
-        self.search = Frequencies(chain, seeds, orders.frequency_order)
+        self.search = Frequencies(chain, seeds, orders)
 
     def members(self, trial: Floats, increment: float | None) -> Iterator[AppendixAMember]:
         """Initialization, (i) to (iv), then the iteration."""

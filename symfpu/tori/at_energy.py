@@ -19,7 +19,6 @@ from symfpu.tori.energy import Energy
 from symfpu.tori.frequencies import (
     Frequencies,
     Point,
-    assembled,
     doubted,
     positive_by_seed,
     refuse_tiny,
@@ -63,7 +62,7 @@ class NoTorusAtEnergy(SymfpuError):
         listed = ", ".join(f"A_{q} = {a:.6g}" for q, a in self.amplitudes.items())
         there = f" ({listed})" if listed else ""
         way = f"its family was followed from 0 to {self.reached:.6g}{there}"
-        end = f"at order {target.orders.order}, then: {self.reason}"
+        end = f"at order {target.search.orders.order}, then: {self.reason}"
         advice = "take a smaller energy or another order"
         super().__init__(f"no torus of {name} {self.energy:.6g}: {way} {end}; {advice}")
 
@@ -93,8 +92,6 @@ class _Target:
     energies.
     """
 
-    orders: Orders
-    digits: int | None
     search: Frequencies
     asked: Energy
     weights: tuple[Fraction, ...]  # of A^2 of the seeds, or of their mode energies
@@ -157,7 +154,7 @@ class _Target:
     def _torus(self, point: Point) -> Torus[FromSeries]:
         roots = self.search.numbers.sqrt(point.squares)
         amplitudes = dict(zip(self.search.seeds, roots.tolist(), strict=True))
-        return assembled(self.search, point, self.orders, amplitudes)
+        return self.search.torus(point, amplitudes)
 
     def _left(self, torus: Torus[FromSeries], part: float) -> Numbers:
         number = self.search.numbers.number
@@ -201,10 +198,8 @@ class _Target:
             raise NoTorusAtEnergy(self, end, failure)
         return end
 
-    def polished(self, member: _Member) -> _Member:
-        """The same member with the digits asked for."""
-        digits = self.digits
-        assert digits is not None
+    def polished(self, member: _Member, digits: int) -> _Member:
+        """The same member with so many digits."""
         with MULTIPRECISION.context(digits):
             array = MULTIPRECISION.array
             squares = array(member.point.squares)
@@ -263,12 +258,12 @@ def series_at_energy(
     modes = tuple(sorted(seed_modes(seeds, chain.N)))
     require_size(chain, modes, orders.order, places)
     weights = seed_weights(chain, modes, energy)
-    search = Frequencies(chain, modes, orders.frequency_order)
-    target = _Target(orders, places, search, energy, weights)
+    search = Frequencies(chain, modes, orders)
+    target = _Target(search, energy, weights)
     refuse_tiny(search, target.linear_squares, "energy", energy.value)
     member = target.solved(near)
     if places is not None:
-        member = target.polished(member)
+        member = target.polished(member, places)
     assert member.torus is not None
     return doubted(member.torus)
 

@@ -45,7 +45,7 @@ def residuals_by_order(torus: Torus[FromSeries]) -> Floats:
     linear: Any = 0.0  # d^2Q/dt^2 less the linear force
     found = []
     with np.errstate(over="ignore", invalid="ignore"):
-        for nu, exact in torus.origin.terms_by_order[: torus.origin.order + 1]:
+        for nu, exact in torus.origin.terms_by_order:
             columns = columns_of(chain, torus.seeds, nu, travels=torus.travels)
             values = exact.astype(float)
             off = (columns.linear() ** 2 - (nu @ omega)[:, None] ** 2) * values

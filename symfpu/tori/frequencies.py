@@ -124,19 +124,20 @@ class Point:
 class Frequencies:
     """The frequencies that belong to amplitudes.
 
-    For one chain, its seeds (ascending) and a frequency order.
+    For one chain, its seeds (ascending) and the orders of its series.
     """
 
     def __init__(
         self,
         chain: Chain,
         seeds: tuple[int, ...],
-        frequency_order: int,
+        orders: Orders,
         digits: int | None = None,
     ) -> None:
         self.chain = chain
         self.seeds = seeds
-        self.frequency_order = frequency_order
+        self.orders = orders
+        self.frequency_order = orders.frequency_order
         self.digits = digits
         self.modes = np.array(seeds) - 1
         self.linear = chain.frequencies()[self.modes]
@@ -265,7 +266,7 @@ class Frequencies:
         self, point: Point, squares: Numbers, digits: int
     ) -> tuple[Frequencies, Point]:
         """The same solution with so many digits; squares as mpf."""
-        search = Frequencies(self.chain, self.seeds, self.frequency_order, digits)
+        search = Frequencies(self.chain, self.seeds, self.orders, digits)
         with search.numbers.context(digits):
             array = search.numbers.array
             amplitudes = array(point.squares)
@@ -278,6 +279,28 @@ class Frequencies:
             except NotFound as failure:
                 ended = NoSelfConsistentFrequencies(search, squares, point.squares, failure)
                 raise ended from failure
+
+    def torus(self, point: Point, amplitudes: Mapping[int, Any]) -> Torus[FromSeries]:
+        """The torus of a solution, without warnings.
+
+        amplitudes : by seed, exact or in the arithmetic of the search.
+        """
+        series, orders = point.series, self.orders
+        if series is None or series.order != orders.order:
+            frequencies = self.exact(point.shifts)
+            series = lindstedt(
+                self.chain, self.seeds, frequencies, orders.order, digits=self.digits
+            )
+        with self.numbers.context(self.digits):
+            terms, _ = series.frequency_terms(point.squares, orders.frequency_order)
+            left = terms[1:].sum(axis=0) - shifts(series)
+            residual = float(np.max(np.abs(left)))
+            given = {}
+            for q, a in amplitudes.items():
+                given[q] = self.numbers.number(a) if isinstance(a, Fraction) else a
+        sizes = tuple(given[q] for q in series.seeds)
+        cuts = orders.frequency_order, orders.coordinate_order
+        return FromSeries(series, sizes, *cuts, root_residual=residual).torus()
 
 
 def _leading_zeros(shift: Any) -> int:
@@ -327,7 +350,7 @@ def series_at_amplitudes(
     numbers = positive_by_seed(chain, "amplitudes", amplitudes)
     seeds = tuple(numbers)
     require_size(chain, seeds, orders.order, places)
-    search = Frequencies(chain, seeds, orders.frequency_order)
+    search = Frequencies(chain, seeds, orders)
     squares = np.array([float(a) ** 2 for a in numbers.values()])
     refuse_tiny(search, squares, "amplitudes", amplitudes)
     point = search.at(squares, None if near is None else search.point_of(near))
@@ -337,7 +360,7 @@ def series_at_amplitudes(
                 [MULTIPRECISION.number(a) ** 2 for a in numbers.values()]
             )
             search, point = search.polished(point, exact_squares, places)
-    return doubted(assembled(search, point, orders, numbers))
+    return doubted(search.torus(point, numbers))
 
 
 def positive_by_seed(
@@ -367,37 +390,6 @@ def refuse_tiny(
     if 0 < shift < SMALLEST_SHIFT:
         allowed = f"what changes a frequency by {SMALLEST_SHIFT:g} of itself or more"
         raise InputError(argument, typed, allowed, "take more, or the linear chain")
-
-
-def assembled(
-    search: Frequencies, point: Point, orders: Orders, amplitudes: Mapping[int, Any]
-) -> Torus[FromSeries]:
-    """The torus of a solution, without warnings.
-
-    Amplitudes as exact numbers or in the arithmetic of the search.
-    """
-    digits = search.digits
-    series = point.series
-    if series is None or series.order != orders.order:
-        frequencies = search.exact(point.shifts)
-        series = lindstedt(
-            search.chain, search.seeds, frequencies, orders.order, digits=digits
-        )
-    with search.numbers.context(digits):
-        terms, _ = series.frequency_terms(point.squares, orders.frequency_order)
-        left = terms[1:].sum(axis=0) - shifts(series)
-        residual = float(np.max(np.abs(left)))
-        given = {}
-        for q, a in amplitudes.items():
-            given[q] = search.numbers.number(a) if isinstance(a, Fraction) else a
-    origin = FromSeries(
-        series=series,
-        amplitudes=tuple(given[q] for q in series.seeds),
-        frequency_order=orders.frequency_order,
-        order=orders.coordinate_order,
-        root_residual=residual,
-    )
-    return origin.torus()
 
 
 def doubted(torus: Torus[FromSeries]) -> Torus[FromSeries]:

@@ -124,12 +124,16 @@ class FromSeries(Origin):
         divisors = [divisor.entry() for divisor in self.series.smallest_divisors]
         yield Field("smallest_divisors", divisors)
 
-    @cached_property
+    @property
     def terms_by_order(self) -> tuple[tuple[Ints, Numbers], ...]:
-        """Harmonics (H, s) and terms of their coefficients (H, C) of every order from 0 on.
+        """Harmonics (H, s) and terms of their coefficients (H, C) of the orders 0 .. order.
 
-        At least up to that of the torus; with digits, MPFR's numbers.
+        With digits, MPFR's numbers.
         """
+        return self._known_terms[: self.order + 1]
+
+    @cached_property
+    def _known_terms(self) -> tuple[tuple[Ints, Numbers], ...]:
         orders = range(self.order + 1)
         return tuple(self.series.harmonic_sums(list(self.amplitudes), k) for k in orders)
 
@@ -161,13 +165,13 @@ class FromSeries(Origin):
         return self._with_known(replace(self, history=history, certificate=certificate))
 
     def _with_known(self, origin: FromSeries) -> FromSeries:
-        if "terms_by_order" in self.__dict__:
-            origin.__dict__["terms_by_order"] = self.__dict__["terms_by_order"]
+        if "_known_terms" in self.__dict__:
+            origin.__dict__["_known_terms"] = self.__dict__["_known_terms"]
         return origin
 
     def terms(self) -> tuple[Ints, Numbers]:
         """Harmonics (H, s) and cosine coefficients (H, C), all orders summed."""
-        series, parts = self.series, self.terms_by_order[: self.order + 1]
+        series, parts = self.series, self.terms_by_order
         keys = [series.grading.harmonic_keys(nu) for nu, _ in parts]
         _, first, index = np.unique(
             np.concatenate(keys), return_index=True, return_inverse=True

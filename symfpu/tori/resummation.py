@@ -357,7 +357,7 @@ def _terms_by_order(torus: Torus[FromSeries]) -> Numbers:
     grading = series.grading
     keys = grading.harmonic_keys(torus.harmonics)
     table = inside(series.numbers).zeros((torus.origin.order + 1, *torus.cosines.shape))
-    for k, (nu, values) in enumerate(torus.origin.terms_by_order[: torus.origin.order + 1]):
+    for k, (nu, values) in enumerate(torus.origin.terms_by_order):
         rows = np.searchsorted(keys, grading.harmonic_keys(nu))
         table[k, rows] = values
     return table

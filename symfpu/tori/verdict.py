@@ -31,7 +31,12 @@ from symfpu.results.table import Column, Table, joined
 from symfpu.results.text_tables import GAP, text_table
 from symfpu.series.divisors import divisor
 from symfpu.series.series import LindstedtSeries
-from symfpu.tori.amplitudes import AmplitudeHistory, frequency_orders, steps_of_frequencies
+from symfpu.tori.amplitudes import (
+    AGREEMENT,
+    AmplitudeHistory,
+    frequency_orders,
+    steps_of_frequencies,
+)
 from symfpu.tori.best_order import GRID_POINTS, some_angles
 from symfpu.tori.columns import Columns, columns_of
 from symfpu.tori.from_series import FromSeries, RootCertificate, require_series_torus
@@ -45,8 +50,6 @@ from symfpu.tori.torus import (
 
 Floats = NDArray[np.float64]
 
-# relative uncertainty of an amplitude above which the root is not stable under the order
-AGREEMENT = 1e-3
 # relative residual that no truncation of a torus' series should exceed at its best order
 LARGE_RESIDUAL = 1e-3
 # relative residual to which a series must have fallen to be called converged
@@ -391,9 +394,7 @@ def _by_order(torus: Torus[FromSeries], numbers: Arithmetic) -> Iterator[_Order]
         Q: Any = 0
         P: Any = 0
         second: Any = 0
-        for k, (nu, exact) in enumerate(
-            torus.origin.terms_by_order[: torus.origin.order + 1]
-        ):
+        for k, (nu, exact) in enumerate(torus.origin.terms_by_order):
             values = exact.astype(float) if numbers is DOUBLES else exact
             _, moduli = series.harmonic_terms(amplitudes, k, absolute=True)
             rates = nu @ omega
