@@ -84,12 +84,6 @@ def test_importing_a_checker_loads_nothing_else():
     assert {name.partition(".")[0] for name in loaded} <= sys.stdlib_module_names | {"symfpu", "__main__"}
 
 
-def test_algebra_knows_no_physics():
-    files = sorted((ROOT / "symfpu" / "algebra").glob("*.py"))
-    ours = {source.split(".")[1] for file in files for source, _ in imported(file.relative_to(ROOT)) if source.startswith("symfpu.")}
-    assert ours <= {"algebra"} | contract()[0]
-
-
 @pytest.mark.parametrize("file", sorted((ROOT / "generated").glob("*.py")), ids=lambda file: file.name)
 def test_exported_files_stand_alone(file):
     assert [source for source, _ in imported(file.relative_to(ROOT)) if source.startswith("symfpu")] == []

@@ -30,13 +30,6 @@ def compiled():
     lindstedt(Chain(N=32, alpha=1), (1,), ("0.2",), 2)
 
 
-def test_six_tori(benchmark, record):
-    series = benchmark.pedantic(lambda: [series_of(torus) for torus in TORI], rounds=3, iterations=1, warmup_rounds=1)
-    performed = sum(s.multiply_adds for s in series)
-    plain = sum(plain_count(s) for s in series)
-    record("six multi-mode tori at the paper's orders", multiply_adds=performed, plain=plain)
-
-
 @pytest.mark.parametrize("torus", TORI, ids=lambda torus: torus.label)
 def test_torus(benchmark, record, torus):
     series = benchmark.pedantic(series_of, (torus,), rounds=3, iterations=1, warmup_rounds=1)

@@ -51,8 +51,6 @@ def torus_of(breather):
 
 
 def rows(solution):
-    if not hasattr(solution, "harmonics"):
-        solution = torus_of(solution)
     return {tuple(nu): row for nu, row in zip(solution.harmonics.tolist(), solution.cosines, strict=True)}
 
 

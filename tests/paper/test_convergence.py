@@ -48,24 +48,15 @@ END = 1.2869859  # amplitude at which the breather's series ends: 30 digits, ord
 PERIODIC = 1.27153895251  # amplitude of the periodic orbit with the printed frequency
 
 
-def torus_of(frequencies, order=TWO_TORUS.order, digits=None):
-    series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, frequencies, order, digits=digits)
-    return solve_amplitudes(series, frequency_order=min(order, FIG1_AMPLITUDE_ORDER))
-
-
 @pytest.fixture(scope="module")
 def torus():
-    return torus_of(TWO_TORUS.frequencies)
+    series = lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, TWO_TORUS.frequencies, TWO_TORUS.order)
+    return solve_amplitudes(series, frequency_order=FIG1_AMPLITUDE_ORDER)
 
 
 @pytest.fixture(scope="module")
 def breather():
     return lindstedt(FIG9_BREATHER.chain, FIG9_BREATHER.seeds, FIG9_BREATHER.frequencies, 150)
-
-
-def sizes(torus):
-    """mu^k S_2(k) of mode 1."""
-    return torus.origin.series.absolute_sums(1, list(torus.amplitudes.values()), with_mu=True)[1]
 
 
 def heights(sums):
@@ -105,25 +96,13 @@ def test_at_the_pole_the_frequency_of_mode_3_is_that_of_the_harmonic(torus):
     assert terms[1:, 2].sum() == pytest.approx(shift, rel=TERM_RATIO)
 
 
-@pytest.mark.parametrize(
-    ("frequencies", "digits"),
-    [(TWO_TORUS.frequencies, 40), (INCOMMENSURABLE_FREQUENCIES, 40), (INCOMMENSURABLE_FREQUENCIES, None)],
-    ids=str,
-)
-def test_neither_digits_nor_incommensurable_frequencies_change_how_amplitudes_settle(torus, frequencies, digits):
-    ours = amplitude_history(lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, frequencies, 14, digits=digits)).differences()
+def test_incommensurable_frequencies_do_not_change_how_amplitudes_settle(torus):
+    """In doubles; with digits: the study below."""
+    ours = amplitude_history(lindstedt(TWO_TORUS.chain, TWO_TORUS.seeds, INCOMMENSURABLE_FREQUENCIES, 14)).differences()
     theirs = amplitude_history(torus.origin.series).differences()
     assert list(ours) == list(range(2, 13, 2))
     for k, delta in ours.items():
         assert delta == pytest.approx(theirs[k], rel=ALIKE)
-
-
-def test_printed_frequencies_grow_and_detuned_ones_fall(torus):
-    """omega_2 = 0.39056 makes one divisor eleven times larger: the terms of mode 1 fall to the last order."""
-    printed, detuned = heights(sizes(torus)), heights(sizes(torus_of(DETUNED_FREQUENCIES)))
-    assert printed == sorted(printed)
-    assert printed[2] > 3 * printed[1] > 3 * printed[0]
-    assert detuned[0] > 3 * detuned[1] > 9 * detuned[2]
 
 
 def test_detuning_moves_the_harmonic_to_the_other_side_of_mode_3():
@@ -194,8 +173,10 @@ def test_the_study_of_fig_1():
         assert variant.sums == pytest.approx(printed.sums, rel=ALIKE)
         for k, delta in variant.differences.items():
             if variant is not rounded and k <= 26:
-                assert delta == pytest.approx(printed.differences[k], rel=20 * ALIKE)
-    assert heights(detuned.sums) == sorted(heights(detuned.sums), reverse=True)
+                assert delta == pytest.approx(printed.differences[k], rel=ALIKE if k <= 12 else 20 * ALIKE)
+    growing, falling = heights(printed.sums), heights(detuned.sums)  # omega_2 = 0.39056 makes one divisor twelve times larger
+    assert growing[2] > 3 * growing[1] > 3 * growing[0]
+    assert falling[0] > 3 * falling[1] > 9 * falling[2]
     assert detuned.residuals.min() < printed.residuals.min() / 100
     assert [study.ratios[k] for k in (36, 38, 40, 42)] == pytest.approx([RATIO] * 4, rel=LATE_TERM_RATIO)
     assert 1 / study.pole == pytest.approx(RATIO, rel=TERM_RATIO)
