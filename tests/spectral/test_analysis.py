@@ -114,7 +114,7 @@ def known_lines(torus, found):
     ("N", "law", "energy", "lengths"),
     [
         (16, {"alpha": "0.3"}, "0.01", (5.5, 8, 12)),
-        (16, {"beta": "0.5"}, "0.05", (5.5, 8, 12)),
+        pytest.param(16, {"beta": "0.5"}, "0.05", (5.5, 8, 12), marks=pytest.mark.long),
         (8, {"alpha": "1/3"}, "0.05", (8, 9.3)),
     ],
 )
