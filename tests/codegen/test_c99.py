@@ -9,37 +9,24 @@ import mpmath
 import numpy as np
 import pytest
 
-from symfpu import Chain, FromSeries, Torus, lindstedt
+from symfpu import Chain, FromSeries, Torus
 from symfpu.codegen.languages.c import C
 from symfpu.codegen.torus_program import torus_facts, torus_program
+from tests.codegen import series_cases
 from tests.codegen.compilers import c_self_test, library_of, pointer
 from tests.codegen.series_cases import OF_LARGEST, assert_close  # noqa: F401 (for other languages, too)
 
-DIGITS = 40
-
 # Every amplitude is chosen freely: a sum of cosines need not be a torus to be evaluated.
-CASES = {
-    "alpha, one seed": (Chain(8, alpha="0.3"), (1,), ("0.39",), 8),
-    "alpha, two seeds": (Chain(16, alpha="0.33"), (1, 2), ("0.19626", "0.39046"), 6),
-    "mixed, three seeds": (Chain(8, alpha="0.3", beta="0.1"), (1, 2, 5), ("0.3905", "0.7663", "1.667"), 4),
-    "beta, four seeds": (Chain(10, beta="0.5"), (1, 3, 6, 9), ("0.315", "0.911", "1.623", "1.981"), 2),
-    "alpha, five seeds": (Chain(12, alpha="-0.2"), (1, 2, 3, 4, 5), ("0.262", "0.519", "0.767", "1.003", "1.221"), 3),
-    "one mode": (Chain(2, alpha="0.2", beta="0.3"), (1,), ("1.42",), 7),
-    "wrapped modes": (Chain(4, alpha="0.3"), (2, 3), ("1.42", "1.86"), 6),
-    "one parity only": (Chain(9, beta="0.6"), (5,), ("1.54",), 5),
-    "order 0": (Chain(6, alpha="0.25"), (2, 3), ("1.01", "1.43"), 0),
-    "toda, two seeds": (Chain(8, potential="toda:0.3"), (1, 2), ("0.39", "0.7663"), 4),
-    "lennard-jones": (Chain(6, potential="lj:13/2,6"), (2,), ("1.01",), 3),
-    "polynomial": (Chain(6, potential="poly:0,1/3,0,1/5"), (1, 4), ("0.52", "1.75"), 2),
-}
+CASES = {name: case for name, case in series_cases.CASES.items() if name != "high order"}
+CASES["lennard-jones"] = Chain(6, potential="lj:13/2,6"), (2,), ("1.0078125",), 3, 0
 
 
 @cache
-def case(name, digits=DIGITS):
+def case(name, digits=series_cases.DIGITS):
     """A case with amplitudes and phases drawn once."""
-    chain, seeds, frequencies, order = CASES[name]
+    _, seeds, _, order, _ = CASES[name]
     draw = np.random.default_rng(len(name))
-    series = lindstedt(chain, seeds, frequencies, order, digits=digits)
+    series = series_cases.numeric(CASES[name], digits=digits)
     number = float if digits is None else mpmath.mpf
     amplitudes = tuple(number(draw.uniform(0.05, 0.3)) for _ in seeds)
     return FromSeries(series, amplitudes, frequency_order=0, order=order).torus(angles(draw, seeds))
