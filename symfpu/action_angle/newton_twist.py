@@ -209,8 +209,7 @@ class TwistProblem(Problem):
         both = np.concatenate([self.harmonics, -self.harmonics[self._moving]])
         self.flow = KroneckerFlow(torus, both, int(mpmath.mp.prec))
         self.bits, self.frequency_scale = self.flow.bits, 1.0
-        each_fixed = np.frompyfunc(lambda x: self.flow.fixed(mpf(x)), 1, 1)
-        self.c: Integers = each_fixed(self.known)
+        self.c = self.flow.fixed_values(self.known)
         self.rates: Integers = self.flow.rates[: len(self.harmonics)]
         squares = (self.rates**2) >> self.bits
         self.divisors: Integers = squares[:, None] - self.flow.squares(self.harmonics)

@@ -261,8 +261,7 @@ class TorusProblem(TruncatedProblem):
         doubles = table.astype(float)
         self._set_force(doubles)
         fixed = self.force.fixed
-        each_fixed = np.frompyfunc(lambda x: fixed(mpmath.mpf(x)), 1, 1)
-        self.bits, self.coefficients = self.force.bits, each_fixed(table)
+        self.bits, self.coefficients = self.force.bits, self.force.fixed_values(table)
         self.largest = fixed(mpmath.mpf(float(np.abs(doubles).max())))
         frequencies = [fixed(w) for w in guess.frequencies]
         self.frequencies = np.array(frequencies, dtype=object)
@@ -312,7 +311,7 @@ class TorusProblem(TruncatedProblem):
         if prescribed.held_frequencies or prescribed.held_amplitudes:
             return np.zeros(len(self.frequencies), dtype=object)
         values = prescribed.values(self.guess(mpmath.mp.dps).torus)
-        return np.array([self.force.fixed(mpmath.mpf(x)) for x in values], dtype=object)
+        return self.force.fixed_values(np.array(values, dtype=object))
 
     def solve(self, residual: Floats, conditions: Floats) -> tuple[Floats, Floats]:
         """The Jacobian's, with frequencies or amplitudes as they are where they are held."""

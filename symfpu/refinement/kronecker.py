@@ -140,6 +140,10 @@ class KroneckerForce:
             return int(doubled + 1) // 2
         return int(mpmath.nint(mpmath.ldexp(value, self.bits)))
 
+    def fixed_values(self, values: Any) -> Integers:
+        """An array of doubles or mpf, exact, as integers."""
+        return np.asarray(np.frompyfunc(lambda x: self.fixed(mpmath.mpf(x)), 1, 1)(values))
+
     def stretches(self, harmonics: Ints, c: Integers) -> Integers:
         """Coefficients (H, B) of the stretches of the points, of those (H, C) at harmonics."""
         return self._times(c, self._rows[self.projection.at(harmonics).entries])

@@ -25,9 +25,10 @@ from symfpu.files.checkpoint import (
     write_checkpoint,
 )
 from symfpu.numbers.typed import fraction_text
+from symfpu.refinement.iterative_refinement import bit_length
+from symfpu.refinement.kronecker import Integers
 from symfpu.refinement.lattice import Ints
 
-Integers = NDArray[np.object_]
 WORD = 32
 
 
@@ -107,8 +108,7 @@ class RefinementFile:
 
 def words(values: Integers) -> NDArray[np.float64]:
     """Integers as doubles of WORD bits each, along a last axis."""
-    longest = max((abs(int(x)).bit_length() for x in values.flat), default=0)
-    count = longest // WORD + 1
+    count = bit_length(values) // WORD + 1
     parts = [(values >> (WORD * k)) & ((1 << WORD) - 1) for k in range(count - 1)]
     parts.append(values >> (WORD * (count - 1)))
     return np.stack([np.asarray(part, dtype=float) for part in parts], axis=-1)
