@@ -218,7 +218,7 @@ from symfpu.notebook import init_printing as init_printing
 
 # errors
 from symfpu.action_angle.newton_twist import NoTwist as NoTwist
-from symfpu.breathers.at_energy import NoBreatherAtEnergy as NoBreatherAtEnergy
+from symfpu.breathers.balance import NoBreatherAtEnergy as NoBreatherAtEnergy
 from symfpu.breathers.equations import NoPeriodicOrbit as NoPeriodicOrbit
 from symfpu.certified.enclosures import NoStabilityProof as NoStabilityProof
 from symfpu.certified.existence import NoExistenceProof as NoExistenceProof

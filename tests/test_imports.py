@@ -25,7 +25,7 @@ BORROWED = {
     "algebra": "proofs series",
     "borders": "numbers refinement sweeps",
     "breathers": "chain dynamics numbers",
-    "certified": "breathers normal numbers proofs",
+    "certified": "normal numbers proofs refinement",
     "chain": "numbers",
     "cli": "normal proofs",
     "dynamics": "chain numbers",

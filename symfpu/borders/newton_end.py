@@ -12,7 +12,7 @@ import numpy as np
 from symfpu.borders.fold import MOST_UNKNOWNS, sheet_of
 from symfpu.borders.last_torus import confirmation, vanishing_divisor
 from symfpu.borders.point import ENERGY, Ray
-from symfpu.breathers.balance import HarmonicBalance, orbit_at
+from symfpu.breathers.balance import HarmonicBalance, orbit_at, require_same
 from symfpu.breathers.equations import NoPeriodicOrbit
 from symfpu.breathers.floquet import floquet
 from symfpu.breathers.from_rest import FromRest
@@ -324,7 +324,7 @@ class _Tori:
         if ended_early(found):
             raise NoTorus("; ".join(found.warnings), found, found.residual())
         if orbit is not None:
-            _require_same(orbit, found)
+            require_same(orbit, found, SAME_ORBIT)
         return found
 
     def _on_family(
@@ -351,16 +351,6 @@ class _Tori:
         return refine(
             guess, amplitudes=amplitudes, tolerance=tolerance, most_harmonics=most
         )
-
-
-def _require_same(orbit: Torus[HarmonicBalance], found: Torus[Newton]) -> None:
-    """NoTorus where Newton's method on tori leads from an orbit to another one."""
-    other = found.by_harmonic().astype(float)
-    length = min(len(other), len(orbit.cosines))
-    size = float(np.abs(orbit.cosines).max())
-    change = float(np.abs(other[:length] - orbit.cosines[:length]).max()) / size
-    if change > SAME_ORBIT:
-        raise NoTorus("Newton's method leads to another orbit", found, found.residual())
 
 
 def _slopes(points: tuple[RefinedPoint, ...]) -> list[float]:

@@ -6,6 +6,8 @@ family from rest (`symfpu.breathers.from_rest`).
 
 from __future__ import annotations
 
+import itertools
+import warnings
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import ClassVar
@@ -17,19 +19,74 @@ from numpy.typing import NDArray
 from symfpu.breathers.curve import Point
 from symfpu.breathers.equations import (
     TAIL,
+    Balance,
+    NoPeriodicOrbit,
     relative_heights,
 )
 from symfpu.breathers.from_rest import FromRest
-from symfpu.breathers.passage import AmplitudeGoal, DetuningGoal, Goal, first_passage
+from symfpu.breathers.passage import (
+    AmplitudeGoal,
+    EnergyGoal,
+    Goal,
+    first_passage,
+)
 from symfpu.chain.chain import Chain
 from symfpu.chain.frequency_shift import frequency_shift
-from symfpu.errors import InputError, NoRealAmplitude, UndeterminedAmplitudes
+from symfpu.errors import (
+    NoRealAmplitude,
+    SymfpuError,
+    UndeterminedAmplitudes,
+)
 from symfpu.numbers.typed import Number, double, exact
-from symfpu.tori.torus import Origin, Torus, comes_from, require_fixed_solution
+from symfpu.refinement.newton import Newton
+from symfpu.refinement.tori import NoTorus
+from symfpu.tori.energy import Energy
+from symfpu.tori.torus import Origin, Torus
 
 Floats = NDArray[np.float64]
-ONE_ANGLE = "a solution of one angle"
-LARGEST_FREQUENCY = 10**6
+# points of the walk beyond the orbit, and the energy relative to its own, up to which another one
+# is looked for
+MORE_POINTS, MORE_ENERGY = 20, 1.5
+
+
+class NoBreatherAtEnergy(SymfpuError):
+    """No breather of this energy: the family from rest ends below it.
+
+    Raised by `torus`.
+
+    seed : the mode. energy : asked for; harmonic : whether it is sum E_q.
+    reached, frequency, amplitude : of the member with the largest energy, all dimensionless;
+        frequency None if there was none.
+    reason : of the last failure. Ours.
+    """
+
+    def __init__(
+        self,
+        seed: int,
+        energy: float,
+        harmonic: bool,
+        member: Torus[HarmonicBalance] | None,
+        failure: NoPeriodicOrbit,
+    ) -> None:
+        self.seed, self.energy, self.harmonic, self.reason = (
+            seed,
+            energy,
+            harmonic,
+            str(failure),
+        )
+        self.reached = 0.0 if member is None else _energy(member, harmonic)
+        self.frequency = None if member is None else float(member.frequency)
+        self.amplitude = 0.0 if member is None else member.amplitude
+        kind = "harmonic energy" if harmonic else "energy"
+        last = "no member was found"
+        if member is not None:
+            last = f"the last has omega = {self.frequency:.12g}, A = {self.amplitude:.6g}"
+        why, *_ = self.reason.partition("; the best")
+        super().__init__(
+            f"no breather of seed {seed} at {kind} {energy:.6g}: "
+            f"the family from rest was followed over 0 .. {self.reached:.6g}, {last}; "
+            f"it ended because: {why}; ask for {kind} below {self.reached:.6g}"
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,27 +132,10 @@ def orbit_of(
     return Torus(chain, (seed,), (omega,), harmonics, cosines, phases, origin=origin)
 
 
-def as_periodic_orbit(
-    solution: object, argument: str, advice: str
-) -> Torus[HarmonicBalance]:
-    """A solution of one angle as a periodic orbit in doubles, at rest at t = 0.
-
-    Raises InputError for any other. advice : what to do with a torus of more angles.
-    """
-    if not isinstance(solution, Torus):
-        advice = "take one from torus or refine"
-        raise InputError(argument, type(solution).__name__, ONE_ANGLE, advice)
-    require_fixed_solution(solution, argument)
-    if len(solution.seeds) > 1:
-        raise InputError(
-            argument, f"a torus of {len(solution.seeds)} angles", ONE_ANGLE, advice
-        )
-    if comes_from(solution, HarmonicBalance) and not solution.phases[solution.seed]:
-        return solution
-    chain, seed, omega = solution.chain, solution.seed, solution.frequency
-    _, sigma = detuning(chain, seed, omega)
-    cosines = solution.by_harmonic().astype(float)
-    return orbit_of(chain, seed, omega, cosines, iterations=0, sigma=sigma)
+def unknowns_of(balance: Balance, torus: Torus) -> Floats:
+    """A torus of one angle with fixed ends as the unknowns of a balance."""
+    _, sigma = detuning(torus.chain, torus.seed, torus.frequency)
+    return balance.vector(torus.by_harmonic().astype(float), sigma)
 
 
 def breather_of_frequency(
@@ -108,22 +148,11 @@ def breather_of_frequency(
     Raises InputError; NoRealAmplitude or UndeterminedAmplitudes if the lowest order has no
     amplitude; NoPeriodicOrbit with the best iterate.
     """
-    omega = positive_frequency(frequency)
+    omega = exact(frequency, "frequency")
     shift, sigma = detuning(chain, seed, omega)
     lowest_amplitude(chain, seed, shift)
-    orbit = _on_the_family(chain, seed, DetuningGoal(sigma))
+    orbit = _on_the_family(chain, seed, AmplitudeGoal(sigma, detuning=True))
     return replace(orbit, frequencies=(omega,))
-
-
-def positive_frequency(frequency: Number) -> Fraction:
-    """The exact number that a frequency denotes; raises InputError."""
-    omega = exact(frequency, "frequency")
-    if not 0 < omega <= LARGEST_FREQUENCY:
-        advice = "take one near the linear frequency"
-        raise InputError(
-            "frequency", frequency, f"a positive number up to {LARGEST_FREQUENCY}", advice
-        )
-    return omega
 
 
 def detuning(chain: Chain, seed: int, omega: Fraction) -> tuple[float, float]:
@@ -160,10 +189,6 @@ def breather_of_amplitude(
     the best iterate.
     """
     A = double(amplitude, "amplitude")
-    if A == 0:
-        raise InputError(
-            "amplitude", amplitude, "a number that is not 0", "take a small one"
-        )
     orbit = _on_the_family(chain, seed, AmplitudeGoal(abs(A)))
     return orbit if A > 0 else half_a_period_later(orbit)
 
@@ -174,6 +199,62 @@ def _on_the_family(chain: Chain, seed: int, goal: Goal) -> Torus[HarmonicBalance
     return orbit_at(first_passage(walk, goal), walk.iterations)
 
 
+def breather_of_energy(
+    chain: Chain, seed: int, energy: Energy, *, stacklevel: int = 3
+) -> Torus[HarmonicBalance]:
+    """The first orbit on the family from rest with the given energy, with A > 0.
+
+    chain : with fixed ends. energy : H, or sum E_q at t = 0, when every momentum vanishes; any
+    ratio has one seed.
+
+    Harmonic balance; the breathers of section 6.4 by their energy, where the paper gives
+    frequencies. The family is followed in steps that do not depend on the energy. Where a wide gap
+    has turned it, it is followed a little further, and a UserWarning says that the energy is passed
+    again. Raises NoBreatherAtEnergy if the family from rest ends before.
+    """
+    goal = float(energy.exact)
+    aim, walk = EnergyGoal(chain, goal, energy.harmonic), None
+    try:
+        walk = FromRest(chain, seed)
+        orbit = orbit_at(first_passage(walk, aim), walk.iterations)
+    except NoPeriodicOrbit as failure:
+        last = _highest(walk, aim) if walk else None
+        raise NoBreatherAtEnergy(seed, goal, energy.harmonic, last, failure) from failure
+    again = _passed_again(walk, aim) if walk.turned else None
+    if again is not None:
+        first = f"A = {orbit.amplitude:.6g} is the first orbit of this energy"
+        later = f"the family from rest passes it again near A = {again:.6g}"
+        advice = "refine(torus, energy=...) finds others near a guess"
+        warnings.warn(f"{first}, {later}: {advice}", stacklevel=stacklevel)
+    return orbit
+
+
+def _passed_again(walk: FromRest, aim: EnergyGoal) -> float | None:
+    """A where the energy has fallen below the goal again, soon after the walk has passed it."""
+    so_far = len(walk.points) - 1
+    try:
+        for point in itertools.islice(walk, so_far, so_far + MORE_POINTS):
+            energy = aim.value(point.balance, point.z)
+            if energy < aim.target:
+                return point.amplitude
+            if energy > MORE_ENERGY * aim.target:
+                return None
+    except NoPeriodicOrbit:
+        return None
+    return None
+
+
+def _highest(walk: FromRest, aim: EnergyGoal) -> Torus[HarmonicBalance]:
+    """The orbit of a walk with the largest energy."""
+    highest = max(walk.points, key=lambda point: aim.value(point.balance, point.z))
+    return orbit_at(highest, walk.iterations)
+
+
+def _energy(member: Torus[HarmonicBalance], harmonic: bool) -> float:
+    """H, or the harmonic energy sum E_q, at t = 0."""
+    return float(member.harmonic_energies().sum() if harmonic else member.energy())
+
+
 def orbit_at(point: Point, iterations: int) -> Torus[HarmonicBalance]:
     """A point of a curve as an orbit, with the corrections on the way to it."""
     balance, cosines = point.balance, point.cosines
@@ -182,6 +263,18 @@ def orbit_at(point: Point, iterations: int) -> Torus[HarmonicBalance]:
     total, sigma = iterations + point.iterations, float(point.z[-1])
     kept = cosines[: last + 1]
     return orbit_of(balance.chain, balance.seed, omega, kept, iterations=total, sigma=sigma)
+
+
+def require_same(orbit: Torus[HarmonicBalance], found: Torus[Newton], most: float) -> None:
+    """NoTorus where Newton's method on tori leads from an orbit to another one.
+
+    most : what it may change of a coefficient, in parts of the largest.
+    """
+    here, there = orbit.cosines, found.by_harmonic().astype(float)
+    length = min(len(here), len(there))
+    change = float(np.abs(there[:length] - here[:length]).max())
+    if change > most * float(np.abs(here).max()):
+        raise NoTorus("Newton's method leads to another orbit", found, found.residual())
 
 
 def half_a_period_later(orbit: Torus[HarmonicBalance]) -> Torus[HarmonicBalance]:

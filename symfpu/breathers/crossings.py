@@ -14,7 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.curve import Linearisation, NotOnTheCurve, Point, settled
+from symfpu.breathers.curve import (
+    OF_DIVISORS,
+    Linearisation,
+    NotOnTheCurve,
+    Point,
+    settled,
+)
 from symfpu.breathers.equations import Balance
 
 Floats = NDArray[np.float64]
@@ -87,12 +93,16 @@ class Held:
     def __init__(self, start: Point, place: int) -> None:
         self.balance, self.place = start.balance, place
         self.linear = start.linearised()
+        self._driven: tuple[Linearisation | None, Floats] = (None, start.z)
 
     def _alone(self, linear: Linearisation) -> Floats:
         """The change at given A by which its own equation alone has the value 1."""
-        unit = np.zeros(len(self.balance.n))
-        unit[self.place] = 1.0
-        return linear.holding(self.balance.first, unit)
+        if self._driven[0] is not linear:
+            unit = np.zeros(len(self.balance.n))
+            unit[self.place] = 1.0
+            driven = linear.holding(self.balance.first, unit, OF_DIVISORS)
+            self._driven = linear, driven
+        return self._driven[1]
 
     def divisor(self, linear: Linearisation) -> float:
         """D: the derivative of its own equation by the coefficient, the others solved."""
@@ -217,7 +227,11 @@ def changed(start: Point, found: Point) -> Iterator[int]:
 
     The others are the suspects of both. Both orbits have the same unknowns.
     """
-    pair = [point.balance.own_divisors(point.z) for point in (start, found)]
+    slopes = [point.balance.slopes(point.z) for point in (start, found)]
+    pair = [
+        point.balance.own_divisors(slope, point.z)
+        for point, slope in zip((start, found), slopes, strict=True)
+    ]
     places = np.flatnonzero(pair[0] * pair[1] < 0).tolist()
     yield from places
     for place in suspects(start, found):

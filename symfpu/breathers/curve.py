@@ -18,18 +18,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.equations import (
-    ROUNDING_STEP,
-    STEP,
-    TAIL,
-    Balance,
-    relative_heights,
-)
-from symfpu.breathers.linearisation import (
-    MOST_UNKNOWNS,
-    linear_system,
-    weights,
-)
+from symfpu.breathers.equations import TAIL, Balance, relative_heights
+from symfpu.breathers.linearisation import MOST_UNKNOWNS, linear_system
 from symfpu.errors import SymfpuError
 
 Floats = NDArray[np.float64]
@@ -37,7 +27,10 @@ Along = Callable[[Floats, Floats], float]
 # corrections of a prediction, new linearisations for them, and a correction relative to the size;
 # a prediction that needs more is too far away
 MOST_CORRECTIONS, MOST_LINEARISATIONS, LARGEST_CORRECTION = 40, 4, 1.0
+STEP = 1e-14  # relative correction that ends the iteration at once
+ROUNDING_STEP = 1e-9  # the one that ends it when it no longer shrinks
 SLOW = 0.1  # of the correction before: one that is larger asks for a new linearisation
+ONE_PLACE = 1e-9  # of the size: orbits so near have one linearisation
 NEARLY_THERE = 1e-4  # a correction after which a linearisation is that of the orbit
 DETUNING = 1e-2  # weight of a relative correction of sigma, whose rounding is larger
 LEAST_MOST, PER_BOND = (
@@ -86,28 +79,35 @@ class Linearisation:
             self._system = linear_system(balance, z)
         except np.linalg.LinAlgError as failure:
             raise NotOnTheCurve(str(failure), None) from failure
-        self._weights = weights(balance)
+        self._z, self._weights = z, balance.weights
         self.index = self._system.index
         along = np.append(np.zeros(len(balance.n)), 1.0)
         self.tangent = self._system.solve(along, OF_TANGENTS)
         self.tangent /= np.linalg.norm(self.tangent[:-1])
 
+    def is_at(self, z: Floats) -> bool:
+        """Whether z is where it was taken, about."""
+        moved = np.abs(z - self._z)[:-1].max()
+        return bool(moved <= ONE_PLACE * np.abs(z[:-1]).max())
+
     def solve(self, right: Floats) -> Floats:
         """The solution for one right-hand side or several, in columns."""
         return self._system.solve(right, OF_DIVISORS)
 
-    def _particular(self, equations: Floats) -> Floats:
-        return self._system.solve(np.append(self._weights * equations, 0.0), OF_STEPS)
+    def _particular(self, equations: Floats, accuracy: float = OF_STEPS) -> Floats:
+        return self._system.solve(np.append(self._weights * equations, 0.0), accuracy)
 
     def across(self, equations: Floats) -> Floats:
         """The change of z by which the equations have these values, across the tangent."""
         x = self._particular(equations)
         return np.asarray(x - self.tangent * (self.tangent[:-1] @ x[:-1]))
 
-    def holding(self, place: int, equations: Floats) -> Floats:
+    def holding(self, place: int, equations: Floats, accuracy: float = OF_STEPS) -> Floats:
         """The same without a change of one coefficient."""
-        x = self._particular(equations)
-        return np.asarray(x - self.tangent * (x[place] / self.tangent[place]))
+        x = self._particular(equations, accuracy)
+        change = x - self.tangent * (x[place] / self.tangent[place])
+        change[place] = 0.0
+        return np.asarray(change)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,6 +188,15 @@ def corrected(
     return settled(balance, z, linear, step)
 
 
+def at_amplitude(balance: Balance, guess: Floats) -> tuple[Floats, int, Linearisation]:
+    """The orbit near a guess that has its amplitude, as `corrected` gives it."""
+
+    def step(linear: Linearisation, z: Floats) -> Floats:
+        return linear.holding(balance.first, balance.equations(z))
+
+    return settled(balance, guess, Linearisation(balance, guess), step)
+
+
 def settled(
     balance: Balance,
     guess: Floats,
@@ -230,8 +239,7 @@ def _relative(change: float, value: float) -> float:
 
 def with_harmonics(point: Point, harmonics: int) -> Point:
     """The same orbit with more harmonics."""
-    chain, seed = point.balance.chain, point.balance.seed
-    balance = Balance(chain, seed, harmonics)
+    balance = point.balance.at(harmonics)
     towards = balance.vector(point.balance.cosines(point.tangent), point.tangent[-1])
     z = balance.vector(point.cosines, float(point.z[-1]))
     linear = Linearisation(balance, z)
@@ -239,16 +247,24 @@ def with_harmonics(point: Point, harmonics: int) -> Point:
     return point_at(balance, z, towards, point.iterations + steps, linear)
 
 
-def resolved(point: Point) -> bool:
-    """Whether the last harmonics are as small as rounding."""
-    heights = relative_heights(point.cosines)
-    return bool(np.max(heights[-max(2, point.balance.harmonics // 8) :]) <= TAIL)
+def alike(start: Point, end: Point) -> tuple[Point, Point]:
+    """Both with as many harmonics."""
+    most = max(p.balance.harmonics for p in (start, end))
+    first, second = (
+        p if p.balance.harmonics == most else with_harmonics(p, most) for p in (start, end)
+    )
+    return first, second
 
 
-def more_harmonics(point: Point) -> int:
+def resolved(balance: Balance, z: Floats) -> bool:
+    """Whether the last harmonics of an orbit are as small as rounding."""
+    heights = relative_heights(balance.cosines(z))
+    return bool(np.max(heights[-max(2, balance.harmonics // 8) :]) <= TAIL)
+
+
+def more_harmonics(balance: Balance, z: Floats) -> int:
     """As many as their fall asks for; NotOnTheCurve where these are too many."""
-    balance, heights = point.balance, relative_heights(point.cosines)
-    known = balance.harmonics
+    known, heights = balance.harmonics, relative_heights(balance.cosines(z))
     ends = [
         max(float(heights[k : k + 2].max()), TAIL / 10) for k in (known // 2, known - 1)
     ]
@@ -259,7 +275,7 @@ def more_harmonics(point: Point) -> int:
     most = min(max(LEAST_MOST, PER_BOND * N), 2 * MOST_UNKNOWNS // (N - 1))
     if known >= most:
         reason = f"{known} harmonics do not resolve it"
-        raise NotOnTheCurve(reason, point, unresolved=True)
+        raise NotOnTheCurve(reason, None, unresolved=True)
     return min(harmonics, most)
 
 
@@ -271,17 +287,25 @@ def step_from(
     bend : half of the second derivative by the length, of the balance of the start. widen : gives
     the start with more harmonics. Raises NotOnTheCurve.
     """
+    balance = start.balance
+    guess = start.z + length * start.tangent + length**2 * bend
+    z, steps, _ = corrected(balance, guess, start.linearised())
+    linear: Linearisation | None = None
     while True:
-        balance = start.balance
-        guess = start.z + length * start.tangent + length**2 * bend
-        z, steps, _ = corrected(balance, guess, start.linearised())
         if balance.frequency(z) <= 0:
             raise NotOnTheCurve("the frequency falls to zero", None)
-        found = point_at(balance, z, start.tangent, steps)
-        if resolved(found):
-            return found, start
-        start = widen(start, more_harmonics(found))
-        bend = start.balance.vector(balance.cosines(bend), bend[-1])
+        if resolved(balance, z):
+            return point_at(balance, z, start.tangent, steps, linear), start
+        try:
+            harmonics = more_harmonics(balance, z)
+        except NotOnTheCurve as refusal:
+            refusal.point = point_at(balance, z, start.tangent, steps)
+            raise
+        start = widen(start, harmonics)
+        guess, balance = start.balance.vector(balance.cosines(z), z[-1]), start.balance
+        z, more, linear = corrected(balance, guess, Linearisation(balance, guess))
+        linear = linear if linear.is_at(z) else None
+        steps += more
 
 
 def require_agreement(start: Point, found: Point) -> None:

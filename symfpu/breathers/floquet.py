@@ -40,9 +40,6 @@ from symfpu.results.result import Gridded
 from symfpu.tori.torus import Torus
 
 Floats = NDArray[np.float64]
-MORE_ANGLES = (
-    "take normal_modes(solution), which tells the stability of tori of any number of angles"
-)
 ACCURACY = 1e-12  # of the tangent map, relative to its largest entry
 # over the square root of the largest stiffness of a bond; with it halved the error is about 1e-12
 FIRST_STEP = 0.1
@@ -191,7 +188,7 @@ def monodromy(orbit: Torus, *, scheme: str = "kahan_li8") -> Floats:
 
     scheme : of the integrator, on T + V. Returns shape (2(N-1), 2(N-1)). Raises InputError.
     """
-    path = path_of(orbit, "orbit", MORE_ANGLES)
+    path = path_of(orbit)
     half, _ = _half(path, particle_scheme(scheme))
     return _in_modes(path, _whole(half))
 
@@ -217,7 +214,7 @@ def floquet(orbit: Torus, *, scheme: str = "kahan_li8") -> Floquet:
     """
     from scipy.linalg import eig
 
-    path = path_of(orbit, "orbit", MORE_ANGLES)
+    path = path_of(orbit)
     half, map_error = _half(path, particle_scheme(scheme))
     n, whole = len(half) // 2, _whole(half)
     B, C = half[:n, n:], half[n:, :n]

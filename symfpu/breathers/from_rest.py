@@ -26,6 +26,8 @@ from symfpu.breathers.curve import (
     Linearisation,
     NotOnTheCurve,
     Point,
+    alike,
+    at_amplitude,
     corrected,
     disagreement,
     more_harmonics,
@@ -94,6 +96,7 @@ class FromRest:
         self.passages: list[Passage] = []
         self.length = LONGEST
         self.iterations = 0
+        self._least = Balance(chain, seed, FIRST_HARMONICS)
         self._bend: Floats | None = None
         self._wide: list[Gap] = []
         self.points += self._begun()
@@ -131,7 +134,7 @@ class FromRest:
         guess = first.z * ratio
         guess[-1] *= ratio
         guess[:-1][balance.n != 1] *= ratio
-        z, steps = balance.newton(guess)
+        z, steps, _ = at_amplitude(balance, guess)
         return point_at(balance, z, _seed_axis(balance), steps)
 
     def _begun(self) -> list[Point]:
@@ -144,14 +147,13 @@ class FromRest:
             try:
                 high = high or self._near_rest(A)
                 low = self._near_rest(A / 2)
-                if not (reason := _off(low, high, _index_at_rest(high.balance))):
-                    return [low, high]
+                pair = alike(low, high)
+                if not (reason := _off(*pair)):
+                    return list(pair)
                 failure = NoPeriodicOrbit(high.balance, reason, high.z)
             except NotOnTheCurve as error:
-                balance = Balance(self.chain, self.seed, FIRST_HARMONICS)
-                failure = NoPeriodicOrbit(balance, error.reason, A * _seed_axis(balance))
-            except NoPeriodicOrbit as error:
-                failure = error
+                axis = A * _seed_axis(self._least)
+                failure = NoPeriodicOrbit(self._least, error.reason, axis)
             A, high = A / 2, low
         assert failure is not None
         raise failure
@@ -175,7 +177,7 @@ class FromRest:
 
         The lowest order of the series in the amplitude: its first power or its square.
         """
-        balance = Balance(self.chain, self.seed, FIRST_HARMONICS)
+        balance = self._least
         equations = balance.equations(amplitude * _seed_axis(balance))
         others = balance.detuning != 0
         others[balance.first] = False
@@ -188,16 +190,13 @@ class FromRest:
         shift = frequency_shift(self.chain, {self.seed: amplitude})[self.seed]
         cosines = np.zeros((2, self.chain.N - 1))
         cosines[1, self.seed - 1] = amplitude
-        sigma, harmonics = shift * (2 * linear + shift), FIRST_HARMONICS
+        sigma, balance = shift * (2 * linear + shift), self._least
         while True:
-            balance = Balance(self.chain, self.seed, harmonics)
-            guess = balance.vector(cosines, sigma)
-            z, steps = balance.newton(guess)
-            found = point_at(balance, z, _seed_axis(balance), steps)
-            if resolved(found):
-                return found
-            cosines, sigma = found.cosines, float(z[-1])
-            harmonics = more_harmonics(found)
+            z, steps, _ = at_amplitude(balance, balance.vector(cosines, sigma))
+            if resolved(balance, z):
+                return point_at(balance, z, _seed_axis(balance), steps)
+            cosines, sigma = balance.cosines(z), float(z[-1])
+            balance = balance.at(more_harmonics(balance, z))
 
     def _widened(self, point: Point, harmonics: int) -> Point:
         """The last point with more harmonics, kept so."""
@@ -340,7 +339,7 @@ class FromRest:
             small = abs(z[gap.place] - expected) <= max(
                 abs(expected), ROUNDING * found.size
             )
-            if other and small and resolved(found):
+            if other and small and resolved(gap.balance, z):
                 self._note(gap, PASSED)
                 self._append(found)
                 self._bend, self.length = None, AFTER_A_GAP
@@ -371,14 +370,13 @@ def _index_at_rest(balance: Balance) -> int:
     return int(below.sum())
 
 
-def _off(low: Point, high: Point, index: int) -> str:
+def _off(low: Point, high: Point) -> str:
     """Why two orbits near rest are not on one branch with the linear mode; empty if they are."""
     for point in (low, high):
         others = np.delete(np.abs(point.z[:-1]), point.balance.first)
         if float(others.max(initial=0)) > MOST_DRIVEN * point.size:
             return "another mode has a tenth of the amplitude"
-    if low.balance.harmonics != high.balance.harmonics:
-        low = with_harmonics(low, high.balance.harmonics)
+    index = _index_at_rest(high.balance)
     for point in (low, high):
         if point.index != index:
             return f"the index is {point.index}, at rest {index}"

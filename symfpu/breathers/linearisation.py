@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from symfpu.breathers.equations import LARGEST_SYSTEM, Balance
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
+Mask = NDArray[np.bool_]
 WHOLE = 1500  # unknowns, up to which the matrix is factored whole
 NEAR_RESONANCE = 5.0
 MOST_NEAR = (
@@ -63,58 +63,60 @@ class Factors:
         return int((diagonal[single] < 0).sum() + of_pairs.sum())
 
 
-class WholeMatrix:
-    """K factored whole. index : its negative eigenvalues."""
-
-    def __init__(self, balance: Balance, z: Floats) -> None:
-        _, jacobian = balance.system(z)
-        last = len(balance.n)
-        matrix = np.zeros((last + 1, last + 1), order="F")
-        matrix[:last, :last] = weights(balance)[:, None] * jacobian[:, :-1]
-        matrix[last, :last] = balance.n**2 * z[:-1]
-        self._factors = Factors(matrix)
-        self.index = self._factors.negative
-
-    def solve(self, right: Floats, accuracy: float) -> Floats:
-        """The solution for one right-hand side or several, in columns; to rounding."""
-        return self._factors.solve(right)
-
-
-class NearResonances:
+class SecondVariation:
     """K with the coefficients near a resonance factored, the others eliminated by their diagonal.
 
-    places : of those coefficients. index : the negative eigenvalues of K, by Haynsworth's rule:
-    those of the eliminated diagonal and of what is left (the Schur complement), which is off by
-    1 / NEAR_RESONANCE^2 of the slopes at most.
+    near : which they are, or all of a small matrix. index : the negative eigenvalues of K, by
+    Haynsworth's rule: those of the eliminated diagonal and of what is left (the Schur complement),
+    which is off by 1 / NEAR_RESONANCE^2 of the slopes at most.
     """
 
-    def __init__(self, balance: Balance, z: Floats, places: Ints) -> None:
-        self.balance, self.z, self.places = balance, z, places
-        self._slopes = balance.slopes(z)
-        self._weights = weights(balance)
-        self._gradient = balance.n**2 * z[:-1]
-        rows, diagonal = balance.rows(self._slopes, z, places)
-        rows *= self._weights[places, None]
-        far = np.ones(len(balance.n), dtype=bool)
-        far[places] = False
-        self._far, self._diagonal = np.flatnonzero(far), (self._weights * diagonal)[far]
-        # the border counts among the coefficients that are kept
-        beside = np.empty((len(places) + 1, len(self._far)))
-        np.compress(far, rows, axis=1, out=beside[:-1])
-        beside[-1] = self._gradient[far]
-        self._beside = beside.T
-        kept = np.zeros((len(places) + 1, len(places) + 1), order="F")
-        kept[:-1, :-1] = rows[:, places]
-        kept[-1, :-1] = kept[:-1, -1] = self._gradient[places]
-        kept -= (beside / self._diagonal) @ self._beside
-        self._factors = Factors(kept)
+    def __init__(self, balance: Balance, slopes: Floats, z: Floats, near: Mask) -> None:
+        self.balance, self.z, self._slopes = balance, z, slopes
+        self._gradient = balance.gradient(z)
+        self._near, self._far = np.flatnonzero(near), np.flatnonzero(~near)
+        self._diagonal = np.zeros(0)
+        if len(self._far):
+            own = balance.weights * balance.own_divisors(slopes, z)
+            self._diagonal = own[self._far]
+        self._kept = np.append(self._near, len(z) - 1)
+        self._factors = Factors(self._complement())
         self.index = self._factors.negative + int((self._diagonal < 0).sum())
+
+    def _complement(self) -> Floats:
+        """What elimination leaves of K, below its diagonal; the border is among what is kept."""
+        from scipy.linalg import blas
+
+        balance, near = self.balance, self._near
+        n, q, last = balance.n, balance.q, len(near)
+        kept = np.zeros((last + 1, last + 1), order="F")
+        own = balance.equation.block(self._slopes, n[near], q[near])
+        np.multiply(own, -balance.weights[near, None], out=kept[:last, :last])
+        divisors = balance.weights * balance.divisors(self.z)
+        kept[np.arange(last), np.arange(last)] += divisors[near]
+        kept[last, :last] = self._gradient[near]
+        for sign in (-1.0, 1.0):
+            chosen = self._diagonal * sign > 0
+            if not chosen.any():
+                continue
+            far, roots = self._far[chosen], np.sqrt(np.abs(self._diagonal[chosen]))
+            beside = np.empty((len(far), last + 1))
+            coupling = balance.equation.block(
+                self._slopes, n[far], q[far], (n[near], q[near])
+            )
+            scale = -balance.weights[far] / roots
+            np.multiply(coupling, scale[:, None], out=beside[:, :last])
+            beside[:, last] = self._gradient[far] / roots
+            kept = blas.dsyrk(-sign, beside.T, 1.0, kept, lower=1, overwrite_c=1)
+        return np.asarray(kept)
 
     def solve(self, right: Floats, accuracy: float) -> Floats:
         """The solution for one right-hand side or several, in columns.
 
         accuracy : what may be left of the right-hand side, relative.
         """
+        if not len(self._far):
+            return self._factors.solve(right)
         if right.ndim == 2:
             return np.column_stack([self.solve(column, accuracy) for column in right.T])
         solution, left = np.zeros(len(right)), right
@@ -130,33 +132,30 @@ class NearResonances:
 
     def _nearly(self, right: Floats) -> Floats:
         """The solution with nothing but the diagonal of the eliminated block."""
-        near = np.append(right[self.places], right[-1])
-        far = right[self._far] / self._diagonal
-        kept = self._factors.solve(near - self._beside.T @ (self._diagonal * far))
-        solution = np.empty(len(right))
-        solution[self.places], solution[-1] = kept[:-1], kept[-1]
-        solution[self._far] = far - self._beside @ kept / self._diagonal
-        return solution
+        solution = np.zeros(len(right))
+        solution[self._far] = right[self._far] / self._diagonal
+        left = right - self._times(solution)
+        driven = np.zeros(len(right))
+        driven[self._kept] = self._factors.solve(left[self._kept])
+        solution[self._far] -= self._times(driven)[self._far] / self._diagonal
+        return solution + driven
 
     def _times(self, x: Floats) -> Floats:
         """K x."""
-        image = self._weights * self.balance.image(self._slopes, self.z, x[:-1])
+        balance = self.balance
+        image = balance.weights * balance.image(self._slopes, self.z, x[:-1])
         return np.append(image + x[-1] * self._gradient, self._gradient @ x[:-1])
 
 
-def weights(balance: Balance) -> Floats:
-    """Norms of the cosines: the mean counts twice."""
-    return np.where(balance.n == 0, 2.0, 1.0)
-
-
-def linear_system(balance: Balance, z: Floats) -> WholeMatrix | NearResonances:
+def linear_system(balance: Balance, z: Floats) -> SecondVariation:
     """K at the orbit z; LinAlgError where it is singular, or too large to be factored."""
+    slopes, near = balance.slopes(z), np.ones(len(balance.n), dtype=bool)
     if len(z) > WHOLE:
-        places = balance.near_resonance(z, NEAR_RESONANCE)
-        rows = len(places) * len(z)
-        if rows <= min(MOST_NEAR * len(z) ** 2, LARGEST_SYSTEM**2):
-            return NearResonances(balance, z, places)
-    if len(z) > LARGEST_SYSTEM:
-        size = f"{len(z)} unknowns with {len(places)} near a resonance"
-        raise np.linalg.LinAlgError(f"the matrix of {size} is too large")
-    return WholeMatrix(balance, z)
+        resonant = balance.near_resonance(slopes, z, NEAR_RESONANCE)
+        count = int(resonant.sum())
+        if count * len(z) <= min(MOST_NEAR * len(z) ** 2, LARGEST_SYSTEM**2):
+            near = resonant
+        elif len(z) > LARGEST_SYSTEM:
+            size = f"{len(z)} unknowns with {count} near a resonance"
+            raise np.linalg.LinAlgError(f"the matrix of {size} is too large")
+    return SecondVariation(balance, slopes, z, near)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from symfpu.breathers.crossings import Gap, beside
 from symfpu.breathers.curve import (
+    Along,
     NotOnTheCurve,
     Point,
+    alike,
     corrected,
     disagreement,
     more_harmonics,
@@ -32,26 +34,13 @@ SAME = 1e-9  # of the largest coefficient: distance of orbits that are one to ro
 SECANTS, SECANT_TOLERANCE = 30, 1e-3  # for the amplitude beside a gap
 
 
-class Goal(Protocol):
-    """What is asked of an orbit: a number that is 0 at rest."""
-
-    @property
-    def target(self) -> float:
-        """Not 0."""
-        ...
-
-    def value(self, balance: Balance, z: Floats) -> float:
-        """Of the orbit z."""
-        ...
-
-    def slope(self, balance: Balance, z: Floats, direction: Floats) -> float:
-        """Its derivative along a direction."""
-        ...
-
-
 @dataclass(frozen=True)
 class EnergyGoal:
-    """H, or with `harmonic` the sum of E_q, at t = 0: momenta vanish there."""
+    """H, or with `harmonic` the sum of E_q, at t = 0: momenta vanish there.
+
+    A goal is what is asked of an orbit, a number that is 0 at rest. target : not 0. value : of the
+    orbit z; slope : its derivative along a direction.
+    """
 
     chain: Chain
     target: float
@@ -74,32 +63,24 @@ class EnergyGoal:
 
 @dataclass(frozen=True)
 class AmplitudeGoal:
-    """A of the seed."""
+    """A of the seed, or with `detuning` sigma = omega^2 - Omega^2."""
 
     target: float
+    detuning: bool = False
+
+    def _place(self, balance: Balance) -> int:
+        return -1 if self.detuning else balance.first
 
     def value(self, balance: Balance, z: Floats) -> float:
         """The amplitude."""
-        return float(z[balance.first])
+        return float(z[self._place(balance)])
 
     def slope(self, balance: Balance, z: Floats, direction: Floats) -> float:
         """Its derivative."""
-        return float(direction[balance.first])
+        return float(direction[self._place(balance)])
 
 
-@dataclass(frozen=True)
-class DetuningGoal:
-    """sigma = omega^2 - Omega^2 of the seed."""
-
-    target: float
-
-    def value(self, balance: Balance, z: Floats) -> float:
-        """The detuning."""
-        return float(z[-1])
-
-    def slope(self, balance: Balance, z: Floats, direction: Floats) -> float:
-        """Its derivative."""
-        return float(direction[-1])
+Goal = EnergyGoal | AmplitudeGoal
 
 
 def first_passage(walk: FromRest, goal: Goal) -> Point:
@@ -130,6 +111,16 @@ def _first(walk: FromRest, goal: Goal) -> Point:
 def _short(point: Point, goal: Goal) -> float:
     """By how much a point is below the target, relative to it."""
     return 1 - goal.value(point.balance, point.z) / goal.target
+
+
+def _met(goal: Goal, balance: Balance) -> Along:
+    """How far along the tangent the target is met."""
+
+    def along(z: Floats, tangent: Floats) -> float:
+        missing = goal.target - goal.value(balance, z)
+        return missing / goal.slope(balance, z, tangent)
+
+    return along
 
 
 def _near_rest(walk: FromRest, goal: Goal) -> Point | None:
@@ -174,15 +165,6 @@ def within(start: Point, end: Point, goal: Goal, halvings: int = HALVINGS) -> Po
     return within(start, middle, goal, halvings - 1) or within(
         middle, end, goal, halvings - 1
     )
-
-
-def alike(start: Point, end: Point) -> tuple[Point, Point]:
-    """Both with as many harmonics."""
-    most = max(p.balance.harmonics for p in (start, end))
-    first, second = (
-        p if p.balance.harmonics == most else with_harmonics(p, most) for p in (start, end)
-    )
-    return first, second
 
 
 def _length(start: Point, end: Point) -> float:
@@ -232,17 +214,12 @@ def _solved(start: Point, end: Point, goal: Goal, part: float) -> Point:
     while True:
         balance, guess = start.balance, _guess(start, end, part)
         linear = (start if part < 0.5 else end).linearised()
-
-        def along(z: Floats, tangent: Floats, balance: Balance = balance) -> float:
-            missing = goal.target - goal.value(balance, z)
-            return missing / goal.slope(balance, z, tangent)
-
-        z, steps, linear = corrected(balance, guess, linear, along)
-        found = point_at(balance, z, start.tangent, steps, linear)
-        if resolved(found):
+        z, steps, linear = corrected(balance, guess, linear, _met(goal, balance))
+        if resolved(balance, z):
             break
-        harmonics = more_harmonics(found)
+        harmonics = more_harmonics(balance, z)
         start, end = with_harmonics(start, harmonics), with_harmonics(end, harmonics)
+    found = point_at(balance, z, start.tangent, steps, linear)
     require_between(start, found, end)
     return found
 
@@ -276,14 +253,10 @@ def beside_gap(start: Point, end: Point, goal: Goal, gap: Gap) -> Point | None:
         low, high = (A, high) if now > 0 else (low, A)
         short = [now, short[1]] if now > 0 else [short[0], now]
 
-    def along(z: Floats, tangent: Floats) -> float:
-        missing = goal.target - goal.value(balance, z)
-        return missing / goal.slope(balance, z, tangent)
-
     towards = np.zeros(len(z))
     towards[balance.first] = end.amplitude - start.amplitude
     try:
-        z, steps, linear = corrected(balance, z, gap.held.linear, along)
+        z, steps, linear = corrected(balance, z, gap.held.linear, _met(goal, balance))
         return point_at(balance, z, towards, steps, linear)
     except NotOnTheCurve as failure:
         reason = f"it lies in the gap of harmonic {gap.harmonic} of mode {gap.mode}"

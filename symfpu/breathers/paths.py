@@ -16,13 +16,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.balance import ONE_ANGLE, HarmonicBalance, as_periodic_orbit
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.tangent import real_waves
 from symfpu.errors import InputError
-from symfpu.tori.torus import Torus, require_solution
+from symfpu.tori.torus import require_solution
 
 Floats = NDArray[np.float64]
+MORE_ANGLES = (
+    "take normal_modes(solution), which tells the stability of tori of any number of angles"
+)
 
 
 class PeriodicPath(NamedTuple):
@@ -42,47 +44,32 @@ class PeriodicPath(NamedTuple):
     frame: Floats | None
 
 
-def path_of(solution: object, argument: str, advice: str) -> PeriodicPath:
-    """The path of a solution of one angle, of any ends; InputError for any other.
+def path_of(solution: object) -> PeriodicPath:
+    """The path of a solution of one angle, of any ends; InputError for any other."""
+    torus = require_solution(solution, "orbit")
+    if len(torus.seeds) > 1:
+        given = f"a torus of {len(torus.seeds)} angles"
+        raise InputError("orbit", given, "a solution of one angle", MORE_ANGLES)
+    wave = replace(torus.in_doubles(), phases={torus.seed: 0.0})
+    chain, omega, (Q, P) = wave.chain, float(wave.frequency), wave.state()
+    cosines = wave.by_harmonic()
+    force = chain.accelerations(Q)
+    if not chain.periodic:
+        coefficients = chain.stretches(cosines)
+        rates = np.arange(len(cosines)) * omega
 
-    advice : what to do with a torus of more angles.
-    """
-    orbit = require_solution(solution, argument)
-    if not orbit.chain.periodic:
-        return _of_cosines(as_periodic_orbit(orbit, argument, advice))
-    if len(orbit.seeds) > 1:
-        given = f"a torus of {len(orbit.seeds)} angles"
-        raise InputError(argument, given, ONE_ANGLE, advice)
-    return _of_waves(orbit.in_doubles())
+        def stretches(t: Floats) -> Floats:
+            return np.asarray(np.cos(np.multiply.outer(t, rates)) @ coefficients)
 
+        return PeriodicPath(chain, omega, stretches, len(cosines), force, None)
+    waves, frame = real_waves(chain), reversal_frame(chain)
+    velocity = [waves @ chain.positions(part) for part in (P, force)]
+    flow = (frame @ np.concatenate(velocity))[chain.N - 1 :]
 
-def _of_cosines(orbit: Torus[HarmonicBalance]) -> PeriodicPath:
-    chain, omega = orbit.chain, float(orbit.frequency)
-    coefficients = chain.stretches(orbit.cosines)
-    rates = np.arange(len(coefficients)) * omega
-
-    def stretches(t: Floats) -> Floats:
-        angles = np.multiply.outer(t, rates)
-        return np.asarray(np.cos(angles) @ coefficients)
-
-    force = chain.accelerations(orbit.Q(0.0))
-    return PeriodicPath(chain, omega, stretches, len(coefficients), force, None)
-
-
-def _of_waves(torus: Torus) -> PeriodicPath:
-    chain, (q,) = torus.chain, torus.seeds
-    wave = replace(torus.in_doubles(), phases={q: 0.0})
-
-    def stretches(t: Floats) -> Floats:
+    def along(t: Floats) -> Floats:
         return chain.stretches(wave.Q(t))
 
-    Q, P = wave.state()
-    waves, frame = real_waves(chain), reversal_frame(chain)
-    velocity = [chain.positions(P), chain.positions(chain.accelerations(Q))]
-    flow = frame @ np.concatenate([waves @ part for part in velocity])
-    highest = int(np.abs(torus.harmonics).max()) + 1
-    omega = float(torus.frequency)
-    return PeriodicPath(chain, omega, stretches, highest, flow[chain.N - 1 :], frame)
+    return PeriodicPath(chain, omega, along, len(cosines), flow, frame)
 
 
 def reversal_frame(chain: Chain) -> Floats:

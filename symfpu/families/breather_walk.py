@@ -10,14 +10,19 @@ from itertools import pairwise
 
 import numpy as np
 
-from symfpu.breathers.balance import as_periodic_orbit, orbit_at
-from symfpu.breathers.curve import NotOnTheCurve, Point, disagreement, point_at
+from symfpu.breathers.balance import orbit_at, require_same, unknowns_of
+from symfpu.breathers.curve import (
+    NotOnTheCurve,
+    Point,
+    alike,
+    disagreement,
+    point_at,
+)
 from symfpu.breathers.equations import Balance, NoPeriodicOrbit
 from symfpu.breathers.floquet import floquet
 from symfpu.breathers.from_rest import FromRest
 from symfpu.breathers.passage import (
     EnergyGoal,
-    alike,
     at_part,
     beside_gap,
     first_passage,
@@ -136,8 +141,7 @@ class BreatherWalk:
         if not sizes[0] - step < abs(A) < sizes[1] + step:
             return None
         start, end = alike(start, end)
-        orbit = as_periodic_orbit(torus, "torus", "")
-        z = start.balance.vector(orbit.cosines, orbit.origin.sigma)
+        z = unknowns_of(start.balance, torus)
         try:
             own = point_at(start.balance, z, start.tangent)
         except NotOnTheCurve:
@@ -160,11 +164,7 @@ class BreatherWalk:
         found = refined_torus(
             guess, conditions, tolerance=self.plan.tolerance, progress=self.progress
         )
-        other = as_periodic_orbit(found, "found", "").cosines
-        length = min(len(other), len(guess.cosines))
-        change = float(np.abs(other[:length] - guess.cosines[:length]).max()) / point.size
-        if change > max(SAME_ORBIT, 10 * self.plan.tolerance):
-            raise NoTorus("Newton's method leads to another orbit", found, found.residual())
+        require_same(guess, found, max(SAME_ORBIT, 10 * self.plan.tolerance))
         return found
 
     def _plane(self, point: Point) -> Condition:
@@ -226,9 +226,8 @@ def stability_between(
 
 def _neighbours(start: Torus[Newton], end: Torus[Newton]) -> tuple[Point, Point]:
     """Two members as points of their curve, in its direction."""
-    orbits = [as_periodic_orbit(torus, "torus", "") for torus in (start, end)]
-    harmonics = max(8, *(len(orbit.cosines) + 3 for orbit in orbits))
+    harmonics = max(8, *(len(torus.by_harmonic()) + 3 for torus in (start, end)))
     balance = Balance(start.chain, start.seed, harmonics)
-    z = [balance.vector(orbit.cosines, orbit.origin.sigma) for orbit in orbits]
+    z = [unknowns_of(balance, torus) for torus in (start, end)]
     low, high = (point_at(balance, x, z[1] - z[0]) for x in z)
     return low, high

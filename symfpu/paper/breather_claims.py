@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.at_energy import breather_of_energy
+from symfpu.breathers.balance import breather_of_energy
 from symfpu.chain.chain import Chain
 from symfpu.errors import SymfpuError
 from symfpu.paper.claims import Claim, judged

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from symfpu.breathers.at_energy import breather_of_energy
+from symfpu.breathers.balance import breather_of_energy
 from symfpu.chain.chain import Chain
 from symfpu.localization.laws import profile_law
 from symfpu.localization.profiles import fpu_trajectory

@@ -11,6 +11,8 @@ waves on a ring one. All sums of one kind run in one precision, doubles or long 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from copy import copy
+from functools import cached_property
 from typing import Any
 
 import mpmath
@@ -35,7 +37,8 @@ Slopes = tuple[Floats, Floats]  # derivatives by coefficients (H, C) and by shif
 WithSlopes = tuple[np.longdouble, Slopes]  # a number and its derivatives
 
 PORTION = 4_000_000  # values of all bonds transformed at once
-ROWS = 16  # of a block, made at once
+ROWS = 16  # of the matrix of a deviation, made at once
+ENTRIES = 8192  # of a block, made at once
 APART = 1e-5  # of stretches, for a derivative by differences
 # harmonics of the slopes that sparse rows hold, their least height, relative, and the least
 # coupling of two columns by one of them
@@ -47,6 +50,13 @@ def curvature(law: bonds.Law, r: Floats) -> Floats:
     """The third derivative of V by central differences of the second."""
     above, below = (bonds.anharmonic_stiffness(law, r + h) for h in (APART, -APART))
     return np.asarray((above - below) / (2 * APART))
+
+
+def _runs(numbers: Ints) -> tuple[Ints, Ints]:
+    """The values of runs of equal numbers, and in which run each of them is."""
+    begins = np.ones(len(numbers), dtype=bool)
+    np.not_equal(numbers[1:], numbers[:-1], out=begins[1:])
+    return numbers[begins], np.cumsum(begins) - 1
 
 
 class InvarianceEquation:
@@ -64,25 +74,37 @@ class InvarianceEquation:
         harmonics: Ints,
         separated: Ints | None = None,
     ) -> None:
-        self.chain, self.seeds, self.harmonics = chain, tuple(seeds), harmonics
-        self.grid = Lattice(harmonics, separated)
-        self.projection = projection(chain, seeds, harmonics)
-        self.mask, self.linear = self.projection.mask, self.projection.omega
-        self.seed_rows = places_of(np.eye(len(seeds), dtype=np.int64), harmonics)
-        self.seed_columns = np.array([self.projection.column(q) for q in seeds])
-        self._weights = 0.5 * halves_of_pairs(harmonics)  # of c^2 in the mean of a square
+        self.chain, self.seeds = chain, tuple(seeds)
         self._law = chain.law(LONG_DOUBLES)
-        self._set_divisors()
+        self._law_in_doubles = chain.law()
+        self._choose(projection(chain, seeds, harmonics), separated)
 
-    def _set_divisors(self) -> None:
+    def _choose(self, there: Projection, separated: Ints | None = None) -> None:
+        """Takes the harmonics of a projection."""
+        self.projection, harmonics = there, there.harmonics
+        self.harmonics, self.grid = harmonics, Lattice(harmonics, separated)
+        self.mask, self.linear = there.mask, there.omega
+        self.seed_rows = places_of(np.eye(len(self.seeds), dtype=np.int64), harmonics)
+        self.seed_columns = np.array([there.column(q) for q in self.seeds])
+        self._weights = 0.5 * halves_of_pairs(harmonics)  # of c^2 in the mean of a square
+
+    def at(self, harmonics: Ints) -> InvarianceEquation:
+        """The same at other harmonics (M, s)."""
+        found = copy(self)
+        found.__dict__.pop("_factors", None)
+        found._choose(self.projection.at(harmonics))
+        return found
+
+    @cached_property
+    def _factors(self) -> tuple[Floats, Floats]:
         """nu.Omega - Omega_q and nu.Omega + Omega_q from twice as many digits as they keep."""
         with mpmath.workdps(2 * DIGITS):
             of_seeds = [self.chain.linear_frequency(q) for q in self.seeds]
             exact = [mpmath.fdot(nu, of_seeds) for nu in self.harmonics.tolist()]
         high, low = self.projection.omega_in_halves()
         rate_high, rate_low = (part[:, None] for part in in_halves(exact))
-        self._below = (rate_high - high) + (rate_low - low)
-        self._above = (rate_high + high) + (rate_low + low)
+        below = (rate_high - high) + (rate_low - low)
+        return below, (rate_high + high) + (rate_low + low)
 
     def divisors(self, shifts: Floats) -> Floats:
         """(nu.omega)^2 - Omega_q^2 for omega = Omega + shifts of the seeds; shape (H, C).
@@ -91,8 +113,8 @@ class InvarianceEquation:
 
         nu.Omega - Omega_q, where digits cancel, is taken from twice as many.
         """
-        moved = (self.harmonics @ shifts)[:, None]
-        return np.asarray((self._below + moved) * (self._above + moved))
+        moved, (below, above) = (self.harmonics @ shifts)[:, None], self._factors
+        return np.asarray((below + moved) * (above + moved))
 
     @property
     def points(self) -> int:
@@ -140,7 +162,7 @@ class InvarianceEquation:
         lattice, there = self._lattice(grid)
         if at is not None:
             there = self.projection.at(at)
-        law = bonds.cast(self._law, cosines.dtype)
+        law = self._law if cosines.dtype == np.longdouble else self._law_in_doubles
         total = np.zeros(there.mask.shape, dtype=cosines.dtype)
         for part, r in self._stretches(cosines, grid):
             tension = bonds.anharmonic_tension(law, r)
@@ -152,7 +174,7 @@ class InvarianceEquation:
 
         Every bond rounds at random at every point, and a force is a sum over bonds and points.
         """
-        law, variances = self.chain.law(), np.zeros(self.projection.points)
+        law, variances = self._law_in_doubles, np.zeros(self.projection.points)
         for part, r in self._stretches(cosines.astype(float)):
             variances[part] = np.mean(bonds.anharmonic_tension(law, r) ** 2, axis=1)
         sizes = self.projection.from_variances(variances)
@@ -224,7 +246,7 @@ class InvarianceEquation:
 
     def slopes(self, cosines: Floats) -> Floats:
         """V''(r) - 1 on the lattice, in doubles; shape (B, points)."""
-        law = self.chain.law()
+        law = self._law_in_doubles
         result = np.empty((self.projection.points, self.grid.points))
         for part, r in self._stretches(cosines.astype(float)):
             result[part] = bonds.anharmonic_stiffness(law, r)
@@ -240,7 +262,7 @@ class InvarianceEquation:
         By differences, good to some ten digits: for Newton's matrix.
         """
         r = self.grid.values(self.projection.to_points(cosines.astype(float)))
-        bent = weights * curvature(self.chain.law(), r)
+        bent = weights * curvature(self._law_in_doubles, r)
         spectrum = self.grid.spectrum(bent)[:, self.grid.entries(self.harmonics)]
         return np.asarray(self.projection.transposed(spectrum.T) * self.mask)
 
@@ -252,26 +274,69 @@ class InvarianceEquation:
             total += self.projection.from_points(driven, part)
         return np.asarray(total * self.mask)
 
-    def block(self, slopes: Floats, rows: Ints, columns: Ints) -> Floats:
-        """The derivative of the force between chosen unknowns; shape (m, m).
+    def block(
+        self,
+        slopes: Floats,
+        rows: Ints,
+        columns: Ints,
+        others: tuple[Ints, Ints] | None = None,
+    ) -> Floats:
+        """The derivative of the force at m chosen unknowns by others; shape (m, k).
 
-        rows, columns : of harmonic and column. Of a unit of cos(nu'.theta) the coefficient at nu is
-        slope[nu - nu'] + slope[nu + nu'], half of it for nu = 0, coupled as the columns are.
+        rows, columns : of harmonic and column. others : the same of the others; default these.
+        Of a unit of cos(nu'.theta) the coefficient at nu is slope[nu - nu'] + slope[nu + nu'], half
+        of it for nu = 0, coupled as the columns are.
         """
-        there = self.projection
-        table = there.coupling_table(self._spectrum(slopes))
-        nu, scale = self.harmonics[rows], there.scales(rows, columns)
-        along = nu @ self.grid.generator
-        matrix = np.empty((len(rows), len(rows)))
-        for first in range(0, len(rows), ROWS):
-            own, rest = slice(first, first + ROWS), slice(first, None)
-            both = (along[own, None] - along[rest], along[own, None] + along[rest])
-            places = [self.grid.folded(turned) for turned in both]
-            found = there.between(table, places, columns[own, None], columns[rest])
-            matrix[own, rest] = scale[own, None] * scale[rest] * found
-            matrix[rest, own] = matrix[own, rest].T
-        matrix[(nu == 0).all(axis=1)] /= 2
+        there, table = self.projection, self._table(slopes)
+        to_rows, to_columns = others or (rows, columns)
+        matrix = np.empty((len(rows), len(to_rows)))
+        scale, to_scale = there.scales(rows, columns), there.scales(to_rows, to_columns)
+        along, beside = (self.harmonics[x] @ self.grid.generator for x in (rows, to_rows))
+        runs = len(_runs(along)[0]) * len(_runs(beside)[0])
+        many = runs * table.shape[1] < matrix.size
+        last = 0
+        while last < len(rows):
+            first, begin = last, 0 if others else last
+            last = first + max(1, ENTRIES // (len(to_rows) - begin))
+            own, rest = slice(first, last), slice(begin, None)
+            slope, places = self._slopes_between(table, along[own], beside[rest], many)
+            found = there.between(slope, places, columns[own, None], to_columns[rest])
+            found *= to_scale[rest]
+            found *= scale[own, None]
+            matrix[own, rest] = found
+            if not others:
+                matrix[rest, own] = found.T
+        matrix[(self.harmonics[rows] == 0).all(axis=1)] /= 2
         return matrix
+
+    def _slopes_between(
+        self, table: Floats, nu: Ints, kappa: Ints, many: bool
+    ) -> tuple[Floats, list[Ints]]:
+        """A table, and where slopes of harmonics nu.g of m rows and others (k,) are in it, (m, k).
+
+        many : columns a harmonic, so that the slopes of both signs are added before they are taken.
+        """
+        if many:
+            (nu, at), (kappa, to) = _runs(nu), _runs(kappa)
+        turned = nu[:, None] - kappa, nu[:, None] + kappa
+        below, above = (self.grid.folded(x) for x in turned)
+        if not many:
+            return table, [below, above]
+        added = table[below.ravel()] + table[above.ravel()]
+        return added, [at[:, None] * len(kappa) + to]
+
+    def _table(self, slopes: Floats) -> Floats:
+        """Of the slopes by place, for what couples the columns."""
+        return self.projection.coupling_table(self._spectrum(slopes))
+
+    def diagonal(self, slopes: Floats, rows: Ints, columns: Ints) -> Floats:
+        """The derivative of the force at chosen unknowns by themselves; (m,)."""
+        there, nu = self.projection, self.harmonics[rows]
+        table = self._table(slopes)
+        places = [self.grid.entries(k * nu) for k in (0, 2)]
+        found = there.between(table, places, columns, columns)
+        half = np.where((nu == 0).all(axis=1), 0.5, 1.0)
+        return np.asarray(half * there.scales(rows, columns) ** 2 * found)
 
     def _spectrum(self, slopes: Floats) -> Floats:
         """Coefficients of the slopes of all points, by place; shape (B, points)."""

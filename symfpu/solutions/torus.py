@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, Literal, overload
 
-from symfpu.breathers.at_energy import breather_of_energy
 from symfpu.breathers.balance import (
     HarmonicBalance,
     breather_of_amplitude,
+    breather_of_energy,
     breather_of_frequency,
 )
 from symfpu.chain.chain import Chain, require_any_chain

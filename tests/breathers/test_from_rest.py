@@ -133,9 +133,9 @@ def test_limit_and_steps_change_neither_gaps_nor_points(chain, monkeypatch):
 def test_the_index_counts_the_negative_eigenvalues():
     balance = Balance(Chain(6, alpha="0.3"), 1, 7)
     z = np.linspace(1, 0.1, len(balance.n) + 1) / 10
-    _, jacobian = balance.system(z)
-    weights = np.where(balance.n == 0, 2.0, 1.0)
-    matrix = np.block([[weights[:, None] * jacobian[:, :-1], (balance.n**2 * z[:-1])[:, None]], [balance.n**2 * z[:-1], np.zeros((1, 1))]])
+    slopes, gradient = balance.slopes(z), (balance.n**2 * z[:-1])[:, None]
+    jacobian = np.column_stack([balance.image(slopes, z, unit) for unit in np.eye(len(balance.n))])
+    matrix = np.block([[balance.weights[:, None] * jacobian, gradient], [gradient.T, np.zeros((1, 1))]])
     assert matrix == pytest.approx(matrix.T, abs=SAME_ORBIT)
     assert Linearisation(balance, z).index == (np.linalg.eigvalsh(matrix) < 0).sum()
 

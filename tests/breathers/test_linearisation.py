@@ -6,7 +6,7 @@ import pytest
 import symfpu
 from symfpu import Chain, refine
 from symfpu.breathers.equations import Balance
-from symfpu.breathers.linearisation import NEAR_RESONANCE, NearResonances, WholeMatrix
+from symfpu.breathers.linearisation import NEAR_RESONANCE, SecondVariation
 from tests.tolerances import PERIODIC_ORBIT, THOUSAND_ROUNDINGS
 
 CASES = (
@@ -22,9 +22,10 @@ def test_elimination_changes_neither_index_nor_solutions(chain, seed, amplitude)
     orbit = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     balance = Balance(chain, seed, len(orbit.cosines) + 3)
     z = balance.vector(orbit.cosines, orbit.origin.sigma)
-    places = balance.near_resonance(z, NEAR_RESONANCE)
-    assert 0 < len(places) < len(z) - 1
-    whole, near = WholeMatrix(balance, z), NearResonances(balance, z, places)
+    slopes = balance.slopes(z)
+    resonant = balance.near_resonance(slopes, z, NEAR_RESONANCE)
+    assert 0 < resonant.sum() < len(z) - 1
+    whole, near = (SecondVariation(balance, slopes, z, chosen) for chosen in (resonant | True, resonant))
     assert near.index == whole.index
     right = np.random.default_rng(1).standard_normal((len(z), 3))
     expected, found = whole.solve(right, 0.0), near.solve(right, 0.0)
@@ -39,8 +40,9 @@ def test_own_divisors_are_the_diagonal(chain, seed, amplitude):
     orbit = symfpu.torus(chain, (seed,), amplitudes={seed: amplitude})
     balance = Balance(chain, seed, len(orbit.cosines) - 1)
     z = balance.vector(orbit.cosines, orbit.origin.sigma)
-    _, jacobian = balance.system(z)
-    assert balance.own_divisors(z) == pytest.approx(np.diag(jacobian), abs=THOUSAND_ROUNDINGS)
+    slopes = balance.slopes(z)
+    diagonal = [balance.image(slopes, z, unit)[k] for k, unit in enumerate(np.eye(len(balance.n)))]
+    assert balance.own_divisors(slopes, z) == pytest.approx(np.array(diagonal), abs=THOUSAND_ROUNDINGS)
 
 
 @pytest.mark.long

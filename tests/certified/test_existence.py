@@ -15,7 +15,6 @@ import pytest
 
 import symfpu
 from symfpu import Chain, InputError, prove_existence, refine
-from symfpu.breathers.equations import Balance
 from symfpu.certified.bond_balls import SPARE_BITS, BondBalls
 from symfpu.certified.contraction import Attempt, places_of
 from symfpu.certified.existence_bounds import linear_part, strip
@@ -23,6 +22,8 @@ from symfpu.certified.layout import layout_of
 from symfpu.certified.rounded_orbit import rounded_orbit
 from symfpu.proofs import check_existence
 from symfpu.proofs.reading import dyadic
+from symfpu.refinement.guesses import shifts_of
+from symfpu.refinement.invariance import InvarianceEquation
 from tests.breather import breather_of
 from tests.proofs.certificate_files import bounds_of
 from tests.tolerances import (
@@ -228,21 +229,28 @@ def test_the_checker_agrees_in_every_bound(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["alpha", "both"])
-def test_the_derivative_is_that_of_harmonic_balance(name):
-    """Another route to the same matrix: Balance collocates in time, with roots in its unknowns."""
+def test_the_derivative_is_that_of_the_invariance_equation(name):
+    """Another route to the same matrix: that equation takes points of the angle, with roots in its unknowns, here enough of them that
+    nothing folds."""
     of_doubles = orbit(name)
     rounded = rounded_orbit(of_doubles)
     with flint.ctx.workprec(rounded.bits + SPARE_BITS):
         part = linear_part(BondBalls(rounded, strip(rounded)), 1e-300)
     attempt = Attempt(part, 6)
-    balance = Balance(of_doubles.chain, of_doubles.seed, attempt.columns)
-    _, jacobian = balance.system(balance.vector(of_doubles.cosines, of_doubles.origin.sigma))
+    numbers = np.arange(attempt.columns + 1)
+    apart = np.arange(-2 * attempt.columns, 2 * attempt.columns + 1)
+    equation = InvarianceEquation(of_doubles.chain, of_doubles.seeds, numbers[:, None], apart[:, None])
+    cosines = np.zeros(equation.mask.shape)
+    cosines[: len(of_doubles.cosines)] = of_doubles.cosines
+    rows, columns = np.nonzero(equation.mask)
     inside = attempt.inside
-    assert (inside.n == balance.n).all()
-    assert (inside.q == balance.q + 1).all()
-    linear = of_doubles.chain.frequencies()[balance.q]
+    assert (inside.n == rows).all()
+    assert (inside.q == columns + 1).all()
+    linear = of_doubles.chain.frequencies()[columns]
     ours = attempt.force[: attempt.count] + np.diag(attempt.divisors[: attempt.count])
-    scaled = -jacobian[:, :-1] / linear[:, None] / linear
+    divisors = equation.divisors(shifts_of(of_doubles)).astype(float)[rows, columns]
+    force = equation.block(equation.slopes(cosines), rows, columns)
+    scaled = (force - np.diag(divisors)) / linear[:, None] / linear
     np.testing.assert_allclose(ours, scaled, rtol=0, atol=THOUSAND_ROUNDINGS * np.abs(scaled).max())
 
 

@@ -172,6 +172,9 @@ def test_a_block_holds_the_products_with_unit_vectors(chain, seeds):
     chosen = np.random.default_rng(7).permutation(len(rows))[:60]
     rows, columns = rows[chosen], columns[chosen]
     block = equation.block(slopes, rows, columns)
+    assert_close(equation.diagonal(slopes, rows, columns), np.diag(block), scale=largest(block))
+    some = rows[::3], columns[::3]
+    assert_close(equation.block(slopes, rows, columns, some), block[:, ::3], scale=largest(block))
     for k, (row, column) in enumerate(zip(rows, columns, strict=True)):
         unit = np.zeros(equation.mask.shape)
         unit[row, column] = 1
