@@ -32,6 +32,7 @@ from symfpu.tori.amplitudes import solve_amplitudes
 from symfpu.tori.at_energy import seed_weights, squares_of_linear_modes
 from symfpu.tori.best_order import best_order
 from symfpu.tori.energy import Energy
+from symfpu.tori.frequencies import listed
 from symfpu.tori.short_series import (
     plain_waves,
     shifted_frequencies,
@@ -172,7 +173,7 @@ def _ended(failure: NoTorus, way: list[tuple[float, Torus[Newton]]]) -> NoTorus:
     if not way:
         return failure
     _, last = way[-1]
-    sizes = ", ".join(f"A_{q} = {float(A):.6g}" for q, A in last.amplitudes.items())
+    sizes = listed("A", {q: float(A) for q, A in last.amplitudes.items()})
     energy = float(last.energy())
     reached = f"its family was followed from rest to H = {energy:.6g} ({sizes})"
     reason = f"{reached}, then: {failure.reason}"

@@ -20,6 +20,7 @@ from symfpu.tori.frequencies import (
     Frequencies,
     Point,
     doubted,
+    listed,
     positive_by_seed,
     refuse_tiny,
     require_size,
@@ -59,8 +60,7 @@ class NoTorusAtEnergy(SymfpuError):
             self.reached = float(target.measured(last.torus))
             self.amplitudes = {q: float(a) for q, a in last.torus.amplitudes.items()}
         name = "harmonic energy" if self.harmonic else "energy H"
-        listed = ", ".join(f"A_{q} = {a:.6g}" for q, a in self.amplitudes.items())
-        there = f" ({listed})" if listed else ""
+        there = f" ({listed('A', self.amplitudes)})" if self.amplitudes else ""
         way = f"its family was followed from 0 to {self.reached:.6g}{there}"
         end = f"at order {target.search.orders.order}, then: {self.reason}"
         advice = "take a smaller energy or another order"

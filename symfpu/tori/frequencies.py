@@ -80,9 +80,9 @@ class NoSelfConsistentFrequencies(SymfpuError):
         self.reached = _roots_by_seed(seeds, reached)
         iterate = search.linear * (1 + failure.iterate.astype(float))
         self.frequencies = dict(zip(seeds, iterate.tolist(), strict=True))
-        asked = _listed("A", self.amplitudes)
-        last = _listed("A", self.reached)
-        omega = _listed("omega", self.frequencies)
+        asked = listed("A", self.amplitudes)
+        last = listed("A", self.reached)
+        omega = listed("omega", self.frequencies)
         left = (
             ""
             if np.isnan(self.residual)
@@ -98,7 +98,8 @@ def _roots_by_seed(seeds: tuple[int, ...], squares: Numbers) -> dict[int, float]
     return {q: float(x) ** 0.5 for q, x in zip(seeds, squares, strict=True)}
 
 
-def _listed(name: str, values: Mapping[int, float]) -> str:
+def listed(name: str, values: Mapping[int, float]) -> str:
+    """Numbers by seed in a sentence."""
     return ", ".join(f"{name}_{q} = {value:.6g}" for q, value in values.items())
 
 
@@ -410,6 +411,6 @@ def doubted(torus: Torus[FromSeries]) -> Torus[FromSeries]:
     distances = [abs(float(a / b - 1)) for a, b in zip(amplitudes, other, strict=True)]
     if max(distances) <= SAME_ROOT:
         return found
-    listed = _listed("A", dict(zip(series.seeds, map(float, other), strict=True)))
-    doubt = f"these frequencies have other amplitudes as well: {listed}"
+    roots = listed("A", dict(zip(series.seeds, map(float, other), strict=True)))
+    doubt = f"these frequencies have other amplitudes as well: {roots}"
     return found.doubted((*found.warnings, doubt))

@@ -577,16 +577,15 @@ class Torus(Gridded, Generic[Made]):
         if each**s > MOST_ANGLES:
             allowed = f"at most {MOST_ANGLES:,} points on the grid of {s} angles"
             raise InputError("number", each, allowed, "take fewer points for each angle")
-        return self._angles((each,) * s)
+        return self._angles(each)
 
-    def _angles(self, shape: tuple[int, ...]) -> Iterator[Numbers]:
-        """The points of a grid of this shape, in portions."""
-        points = math.prod(shape)
-        portion = angles_at_once(self.chain)
+    def _angles(self, number: int) -> Iterator[Numbers]:
+        shape = (number,) * len(self.seeds)
+        points, portion = math.prod(shape), angles_at_once(self.chain)
         for start in range(0, points, portion):
             index = np.arange(start, min(start + portion, points))
             digits = np.stack(np.unravel_index(index, shape), axis=-1)
-            yield 2 * self.numbers.pi * (3 * digits + 1) / (3 * shape[0])
+            yield 2 * self.numbers.pi * (3 * digits + 1) / (3 * number)
 
     # as a table
 
