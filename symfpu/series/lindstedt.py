@@ -16,7 +16,7 @@ from symfpu.series.fixed_point import fixed_point_series
 from symfpu.series.memory import check_size
 from symfpu.series.monomials import monomial_space, wave_space
 from symfpu.series.recursion import named_series
-from symfpu.series.rings import BY_NAME, FLOAT64, RINGS, Frequencies
+from symfpu.series.rings import BY_NAME, FLOAT64, RINGS
 from symfpu.series.series import LindstedtSeries
 
 Chosen = Sequence[Number] | Mapping[int, Number]
@@ -81,22 +81,24 @@ def lindstedt(
         ring = ring or "symbolic"
         _refuse_numbers(frequencies, digits, ring)
         return series_for_all_lengths(chain, seeds, order, ring, progress)
-    seeds = seed_modes(seeds, chain.N)
-    order = order_of(order)
-    exact_frequencies = None if frequencies is None else frequencies_of(frequencies, seeds)
-    seeds, exact_frequencies = _ascending(seeds, exact_frequencies)
+    given = seed_modes(seeds, chain.N)
+    modes, order = tuple(sorted(given)), order_of(order)
+    exact_frequencies = None
+    if frequencies is not None:
+        by_seed = dict(zip(given, frequencies_of(frequencies, given), strict=True))
+        exact_frequencies = tuple(by_seed[q] for q in modes)
     if digits is not None:
         _require_no_ring(ring)
         return fixed_point_series(
-            chain, seeds, exact_frequencies, order, digits_of(digits), progress
+            chain, modes, exact_frequencies, order, digits_of(digits), progress
         )
     ring = ring or ("symbolic" if frequencies is None else "float64")
     if ring not in BY_NAME:
         raise InputError(
             "ring", ring, f"one of {', '.join(BY_NAME)}", "name a ring or leave it out"
         )
-    check_size(chain, seeds, order, ring)
-    space = monomial_space(chain, seeds, order)
+    check_size(chain, modes, order, ring)
+    space = monomial_space(chain, modes, order)
     return named_series(RINGS[ring], chain, space, exact_frequencies, order, progress)
 
 
@@ -152,13 +154,3 @@ def _require_no_ring(ring: str | None) -> None:
     if ring is not None:
         allowed = "none where digits are given: they have their own, of fixed-point numbers"
         raise InputError("ring", ring, allowed, "leave one of them out")
-
-
-def _ascending(
-    seeds: tuple[int, ...], frequencies: Frequencies
-) -> tuple[tuple[int, ...], Frequencies]:
-    """Seeds in ascending order, each with its own frequency."""
-    order = sorted(range(len(seeds)), key=lambda i: seeds[i])
-    return tuple(seeds[i] for i in order), None if frequencies is None else tuple(
-        frequencies[i] for i in order
-    )
