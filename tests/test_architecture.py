@@ -54,21 +54,22 @@ def test_what_the_way_passes_is_there(path, name):
 CHECKERS = {
     "reading": set(),
     "rounding": set(),
-    "check_propagation": {"reading"},
-    "check_every_length": {"reading", "check_propagation"},
-    "check_torus": {"reading", "rounding"},
-    "check_existence": {"reading", "rounding"},
-    "check_stability": {"reading", "rounding", "check_existence"},
+    "propagation": {"reading"},
+    "every_length": {"reading", "propagation"},
+    "torus": {"reading", "rounding"},
+    "existence": {"reading", "rounding"},
+    "stability": {"reading", "rounding", "existence"},
+    "verify": {"reading", "propagation", "every_length", "torus", "existence", "stability"},
 }
 
 
 @pytest.mark.parametrize("name", CHECKERS)
 def test_a_checker_imports_the_standard_library_and_checkers_alone(name):
-    room = ROOT / "symfpu" / "proofs"
+    room = ROOT / "symfpu" / "checkers"
     files = sorted((room / name).glob("*.py")) or [room / f"{name}.py"]
     found = set().union(*(imported(file.relative_to(ROOT)) for file in files))
-    allowed = {f"symfpu.proofs.{part}" for part in CHECKERS[name] | {name}}
-    named = {f"{source}.{part}" if source == "symfpu.proofs" else source for source, part in found}
+    allowed = {f"symfpu.checkers.{part}" for part in CHECKERS[name] | {name}}
+    named = {f"{source}.{part}" if source == "symfpu.checkers" else source for source, part in found}
     ours = {source for source in named if source.startswith("symfpu")}
     assert {source for source in ours if not source.startswith(tuple(allowed))} == set()
     assert {source.partition(".")[0] for source in named - ours} <= sys.stdlib_module_names
@@ -76,11 +77,11 @@ def test_a_checker_imports_the_standard_library_and_checkers_alone(name):
 
 def test_importing_a_checker_loads_nothing_else():
     """Run alone in a new process: the package itself loads nothing that checkers could use."""
-    script = f"import sys\nfrom symfpu.proofs import {', '.join(CHECKERS)}\nprint(*sys.modules)"
+    script = f"import sys\nfrom symfpu.checkers import {', '.join(CHECKERS)}\nprint(*sys.modules)"
     loaded = subprocess.run([sys.executable, "-S", "-c", script], cwd=ROOT, check=True, capture_output=True, text=True).stdout.split()
-    ours = {name for name in loaded if name.startswith("symfpu.proofs.")}
+    ours = {name for name in loaded if name.startswith("symfpu.checkers.")}
     assert {name.split(".")[2] for name in ours} == set(CHECKERS)
-    assert {name for name in loaded if name.startswith("symfpu")} - ours == {"symfpu", "symfpu.proofs"}
+    assert {name for name in loaded if name.startswith("symfpu")} - ours == {"symfpu", "symfpu.checkers"}
     assert {name.partition(".")[0] for name in loaded} <= sys.stdlib_module_names | {"symfpu", "__main__"}
 
 

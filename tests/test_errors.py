@@ -14,13 +14,13 @@ import symfpu
 from symfpu import Chain, SymfpuError, lindstedt, solve_amplitudes
 from symfpu.breathers.curve import NotOnTheCurve
 from symfpu.breathers.equations import Balance
+from symfpu.checkers.reading import CertificateError
 from symfpu.cli.terminal import Interrupted
 from symfpu.errors import VanishingResidue
 from symfpu.families.appendix_a import NoFurtherMember
 from symfpu.files.checkpoint import Refused
 from symfpu.paper.corrected import TimeIsUp
 from symfpu.paper.side_by_side import TargetsFailed
-from symfpu.proofs.reading import CertificateError
 from symfpu.sweeps.rows import SweepFailure
 from tests.every_result import COPIES, PAIR, SINGLE, mapped, orbit, refined, stability, swept, swept_rules
 from tests.store.test_saved_file import same

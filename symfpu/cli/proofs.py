@@ -11,6 +11,8 @@ import typer
 
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import excitation_sequence
+from symfpu.checkers.reading import CertificateError
+from symfpu.checkers.verify import CHECKERS, verified_certificate
 from symfpu.cli.chains import BondsIfGiven, BondsOption, EndsOption, PotentialOption
 from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, output_named, say_kept
@@ -37,12 +39,11 @@ from symfpu.cli.theorems import (
 )
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
+from symfpu.files.formats import format_of, opened_by
 from symfpu.files.progress import NO_FRACTION
 from symfpu.files.writing import output_file, write_text
 from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
-from symfpu.proofs.checkers import verified_certificate
-from symfpu.proofs.reading import CertificateError
 from symfpu.proofs.sweeps import sweep_markdown, sweep_propagation
 from symfpu.reports.proofs import certificate_record
 
@@ -206,6 +207,7 @@ def verify(
     of theorems for every N the flats are found again; of orbits and exponents every bound.
     """
     path = path_named("certificate", file)
+    _require_certificate(path)
     try:
         with progress_bar("check") as advance:
             advance(f"check of {path.name}", NO_FRACTION)
@@ -219,6 +221,18 @@ def verify(
         print_json(certificate_record(certificate) | about)
         return
     say("\n".join([*checked, "the certificate is valid"]))
+
+
+def _require_certificate(path: Path) -> None:
+    """InputError for a file of ours that is none, with what opens it."""
+    try:
+        named = format_of(path)
+    except OSError:  # that there is none is said by the checker
+        return
+    advice = None if named in CHECKERS else opened_by(named)
+    if advice is not None:
+        problem = f"its format is {named!r}: {advice}"
+        raise InputError("certificate", str(path), ALLOWED_CERTIFICATE, problem)
 
 
 @app.command(

@@ -213,7 +213,7 @@ class PropagationProof(Certified):
         return frozenset(modes_of_one_parity(self.N, self.model, self.seeds, orders))
 
     def _certificate_body(self) -> dict[str, Any]:
-        """`symfpu.proofs.check_propagation` checks it by another route."""
+        """`symfpu.checkers.propagation` checks it by another route."""
         rule = [list(modes) for modes in self.rule]
         actual = [list(modes) for modes in self.actual]
         return {

@@ -169,7 +169,7 @@ class RuleForAllN(Certified):
         return theorem_text(self)
 
     def _certificate_body(self) -> dict[str, Any]:
-        """`symfpu.proofs.check_every_length` checks it by another route."""
+        """`symfpu.checkers.every_length` checks it by another route."""
         listed = self._listed()
         points = [point for found in listed for point in found.points]
         return {

@@ -8,13 +8,10 @@ from symfpu.certified.existence import ExistenceProof
 from symfpu.certified.residual import ResidualProof
 from symfpu.certified.stability_proof import StabilityProof
 from symfpu.certified.stay import StayProof
-from symfpu.proofs import (
-    certificates,
-    check_existence,
-    check_stability,
-    check_torus,
-    theorem,
-)
+from symfpu.checkers import existence as check_existence
+from symfpu.checkers import stability as check_stability
+from symfpu.checkers import torus as check_torus
+from symfpu.proofs import certificates, theorem
 from symfpu.proofs.certificates import EVIDENCE, PropagationProof
 from symfpu.proofs.theorem import RuleForAllN
 

@@ -20,12 +20,12 @@ from symfpu.certified.contraction import Attempt, places_of
 from symfpu.certified.existence_bounds import linear_part, strip
 from symfpu.certified.layout import layout_of
 from symfpu.certified.rounded_orbit import rounded_orbit
-from symfpu.proofs import check_existence
-from symfpu.proofs.reading import dyadic
+from symfpu.checkers import existence as check_existence
+from symfpu.checkers.reading import dyadic
 from symfpu.refinement.guesses import shifts_of
 from symfpu.refinement.invariance import InvarianceEquation
 from tests.breather import breather_of
-from tests.proofs.certificate_files import bounds_of
+from tests.checkers.certificate_files import bounds_of
 from tests.tolerances import (
     FREE,
     NO_HARMONIC,

@@ -15,8 +15,8 @@ from symfpu.certified.enclosures import check_count, enclosed_exponent, slopes_o
 from symfpu.certified.exponent_bounds import Attempt
 from symfpu.certified.sectors import sectors_of
 from symfpu.certified.stability_proof import Interval, gaps_of, orbit_of
+from symfpu.checkers import stability as check_stability
 from symfpu.numbers.one_sided import above, below
-from symfpu.proofs import check_stability
 from tests.breather import breather_of
 from tests.tolerances import MOVED_INVERSE, MULTIPLIER_OF_PROOF, ROUNDING_OF_RESIDUAL, SAME_BOUNDS
 

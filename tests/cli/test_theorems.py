@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from symfpu.checkers.verify import CHECKERS
 from symfpu.cli.main import main
-from symfpu.proofs.checkers import CHECKERS
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "theorems.md"
@@ -22,7 +22,7 @@ sys.path.insert(0, sys.argv[1])
 for path in sys.argv[2:]:
     format = json.load(open(path))["format"]
     for name in ("propagation", "every_length", "existence", "stability", "torus"):
-        checker = import_module(f"symfpu.proofs.check_{name}")
+        checker = import_module(f"symfpu.checkers.{name}")
         if checker.FORMAT == format:
             print(json.dumps([path, *checker.verify(path)]))
 foreign = {name.partition(".")[0] for name in sys.modules} - set(sys.stdlib_module_names) - {"symfpu", "__main__"}
@@ -58,7 +58,7 @@ def test_the_page_has_every_kind(certificates):
     formats = {json.loads(path.read_text())["format"] for path in certificates.values()}
     assert formats == set(CHECKERS)
     rooms = {checker.check.__module__.split(".")[2] for checker in CHECKERS.values()}
-    assert all(f"`{room}/`" in PAGE.read_text() for room in rooms)
+    assert all(f"`checkers/{room}/`" in PAGE.read_text() for room in rooms)
 
 
 THEOREMS = {

@@ -8,11 +8,11 @@ import pytest
 from symfpu import Chain, InputError, coupling_sequence, lindstedt, prove_propagation, sweep_propagation
 from symfpu.chain.potentials.toda import Toda
 from symfpu.chain.potentials.typed import potential_of_text
-from symfpu.proofs.check_propagation import NAMED_POTENTIALS, verify
-from symfpu.proofs.reading import CertificateError
-from tests.proofs.certificate_files import sealed
-from tests.proofs.test_check_propagation import SAYS
-from tests.proofs.test_forgeries import is_valid
+from symfpu.checkers.propagation import NAMED_POTENTIALS, verify
+from symfpu.checkers.reading import CertificateError
+from tests.checkers.certificate_files import sealed
+from tests.checkers.test_forgeries import is_valid
+from tests.checkers.test_propagation import SAYS
 from tests.refusals import each, refused
 
 CASES = {

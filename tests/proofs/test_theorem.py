@@ -10,16 +10,16 @@ import pytest
 
 from symfpu import InputError, RuleForAllN, prove_for_all_N, prove_propagation
 from symfpu.chain.propagation import product_couplings
+from symfpu.checkers.every_length import read_claim
+from symfpu.checkers.propagation import MODELS, Budget, Case, Point, Recursion
+from symfpu.checkers.reading import CertificateError
+from symfpu.checkers.verify import verify as verify_certificate
 from symfpu.cli.main import main
 from symfpu.proofs.certificates import random_point
-from symfpu.proofs.check_every_length import read_claim
-from symfpu.proofs.check_propagation import MODELS, Budget, Case, Point, Recursion
-from symfpu.proofs.checkers import verify_certificate
 from symfpu.proofs.decided_file import DecidedFile
 from symfpu.proofs.every_length import decided_flat
 from symfpu.proofs.flats import Flat, last_order
 from symfpu.proofs.plus_terms import BOTH, MINUS, PLUS, PlusResidues, PlusTerms, sign_product, splits
-from symfpu.proofs.reading import CertificateError
 from tests.refusals import each, refused
 
 

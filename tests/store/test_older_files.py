@@ -8,8 +8,8 @@ import pytest
 
 import symfpu
 from symfpu import BundleError, Chain, alignment_indices, family, integrate, lindstedt, load, refine, save, solve_amplitudes
+from symfpu.checkers.propagation import verify
 from symfpu.files.archive import SCHEMA
-from symfpu.proofs.check_propagation import verify
 from tests.cli.running import run
 from tests.store.test_damage import forged
 
