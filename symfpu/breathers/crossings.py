@@ -115,9 +115,9 @@ class Held:
         z[self.balance.first], z[self.place] = amplitude, value
         z[-1] *= ratio**2
 
-        def step(linear: Linearisation, z: Floats) -> Floats:
+        def step(linear: Linearisation, z: Floats, equations: Floats) -> Floats:
             alone = self._alone(linear)
-            change = linear.holding(self.balance.first, self.balance.equations(z))
+            change = linear.holding(self.balance.first, equations)
             return np.asarray(change - alone * (change[self.place] / alone[self.place]))
 
         z, _, self.linear = settled(self.balance, z, self.linear, step)

@@ -179,8 +179,8 @@ def corrected(
     corrections, and the last linearisation. Raises NotOnTheCurve.
     """
 
-    def step(linear: Linearisation, z: Floats) -> Floats:
-        change = linear.across(balance.equations(z))
+    def step(linear: Linearisation, z: Floats, equations: Floats) -> Floats:
+        change = linear.across(equations)
         if along is None:
             return change
         return np.asarray(change - along(z - change, linear.tangent) * linear.tangent)
@@ -191,8 +191,8 @@ def corrected(
 def at_amplitude(balance: Balance, guess: Floats) -> tuple[Floats, int, Linearisation]:
     """The orbit near a guess that has its amplitude, as `corrected` gives it."""
 
-    def step(linear: Linearisation, z: Floats) -> Floats:
-        return linear.holding(balance.first, balance.equations(z))
+    def step(linear: Linearisation, z: Floats, equations: Floats) -> Floats:
+        return linear.holding(balance.first, equations)
 
     return settled(balance, guess, Linearisation(balance, guess), step)
 
@@ -201,7 +201,7 @@ def settled(
     balance: Balance,
     guess: Floats,
     linear: Linearisation,
-    step: Callable[[Linearisation, Floats], Floats],
+    step: Callable[[Linearisation, Floats, Floats], Floats],
 ) -> tuple[Floats, int, Linearisation]:
     """What corrections of a guess lead to, as `corrected` gives it.
 
@@ -209,9 +209,9 @@ def settled(
     serve is replaced by that at the guess, others by that at z.
     """
     z, size = guess, float(np.max(np.abs(guess[:-1])))
-    before, made, near = np.inf, 0, False
+    before, made, near, of_guess = np.inf, 0, False, balance.equations(guess)
     for count in range(1, MOST_CORRECTIONS + 1):
-        change = step(linear, z)
+        change = step(linear, z, of_guess if z is guess else balance.equations(z))
         z = z - change
         moved = float(np.max(np.abs(change[:-1]))) / size
         relative = max(moved, DETUNING * _relative(float(change[-1]), float(z[-1])))

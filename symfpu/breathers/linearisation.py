@@ -95,10 +95,8 @@ class SecondVariation:
         divisors = balance.weights * balance.divisors(self.z)
         kept[np.arange(last), np.arange(last)] += divisors[near]
         kept[last, :last] = self._gradient[near]
-        for sign in (-1.0, 1.0):
+        for sign in np.unique(np.sign(self._diagonal)):
             chosen = self._diagonal * sign > 0
-            if not chosen.any():
-                continue
             far, roots = self._far[chosen], np.sqrt(np.abs(self._diagonal[chosen]))
             beside = np.empty((len(far), last + 1))
             coupling = balance.equation.block(

@@ -290,10 +290,10 @@ class InvarianceEquation:
         there, table = self.projection, self._table(slopes)
         to_rows, to_columns = others or (rows, columns)
         matrix = np.empty((len(rows), len(to_rows)))
-        scale, to_scale = there.scales(rows, columns), there.scales(to_rows, to_columns)
-        along, beside = (self.harmonics[x] @ self.grid.generator for x in (rows, to_rows))
-        runs = len(_runs(along)[0]) * len(_runs(beside)[0])
-        many = runs * table.shape[1] < matrix.size
+        scale, along, runs = to_scale, beside, to_runs = self._chosen(rows, columns)
+        if others:
+            to_scale, beside, to_runs = self._chosen(to_rows, to_columns)
+        many = runs * to_runs * table.shape[1] < matrix.size
         last = 0
         while last < len(rows):
             first, begin = last, 0 if others else last
@@ -308,6 +308,11 @@ class InvarianceEquation:
                 matrix[rest, own] = found.T
         matrix[(self.harmonics[rows] == 0).all(axis=1)] /= 2
         return matrix
+
+    def _chosen(self, rows: Ints, columns: Ints) -> tuple[Floats, Ints, int]:
+        """Scales and nu.g of chosen unknowns, and into how many runs of harmonics they fall."""
+        along = self.harmonics[rows] @ self.grid.generator
+        return self.projection.scales(rows, columns), along, len(_runs(along)[0])
 
     def _slopes_between(
         self, table: Floats, nu: Ints, kappa: Ints, many: bool
