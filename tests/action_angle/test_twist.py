@@ -70,7 +70,9 @@ def missed(found, ends):
         return float(abs(turned - found.matrix @ further).max() / abs(turned).max())
 
 
-@pytest.mark.parametrize(("law", "seed"), [pytest.param("alpha", 1, marks=pytest.mark.long), ("beta", 2)])
+@pytest.mark.parametrize(
+    ("law", "seed"), [pytest.param("alpha", 1, marks=pytest.mark.long), pytest.param("beta", 2, marks=pytest.mark.long)]
+)
 def test_digits_of_a_torus(law, seed):
     """Symmetric to them, and what two tori nearby have."""
     chain, amplitudes = Chain(4, **CASES[law]), {1: "0.1", 2: "0.1"}

@@ -140,6 +140,7 @@ def test_states_beyond_the_well_count_as_no_torus():
 CHEAP = {"packets": ["low:1"], "order": 1, "borders": list(BOTH), "time": 3e3, "draws": 1, "executor": HERE}
 
 
+@pytest.mark.long
 def test_a_file_is_gone_on_with_and_has_earlier_times(tmp_path):
     file = tmp_path / "chaos.jsonl"
     atlas([Chain(4, beta=1), Chain(6, beta=1)], **CHEAP, file=file)

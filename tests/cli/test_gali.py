@@ -137,6 +137,7 @@ def test_an_estimate_grows_with_the_time_and_computes_nothing(capsys, kept, tmp_
     assert run(capsys, *words, "--time", "5")[0] == 2
 
 
+@pytest.mark.long
 def test_what_the_torus_foretells_stands_beside(capsys, tmp_path):
     """The closed form and the integrated frame of the same random vectors."""
     file, picture = save(tmp_path / "breather", symfpu.torus(Chain(4, beta=1), (2,), amplitudes={2: "0.4"})), tmp_path / "gali.png"

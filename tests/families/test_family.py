@@ -401,6 +401,7 @@ def test_an_energy_beyond_reach_is_not_in_the_family(energy):
     assert "follow the family further" in str(failure.value)
 
 
+@pytest.mark.long
 def test_a_frequency_may_have_several_members():
     """omega_2 of the folded family falls and rises again: two tori have one omega_2, with one ratio of the mode energies."""
     family_ = folded()

@@ -28,6 +28,7 @@ def test_a_travelling_wave_loses_its_stability_where_a_multiplier_leaves_the_cir
     assert counts[1] == counts[0] + 1
 
 
+@pytest.mark.long
 def test_standing_waves_have_the_onset_of_fixed_ends():
     fixed = symfpu.torus(Chain(4, alpha="0.5"), (2,), amplitudes={2: "0.5"})
     [expected] = normal_family(fixed, {2: "1"}, members=2, modes=[1]).events

@@ -110,7 +110,7 @@ SEVERAL = {
 }
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] if "seeds" in name else []) for name in SEVERAL])
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[] if name == "a wave" else pytest.mark.long) for name in SEVERAL])
 def test_families_of_tori_to_two_ends_have_the_same_members(name):
     """The goal chooses no step: members are equal, and the end of the nearer family is on the farther one."""
     arguments, (first, near_end, far_end), options = SEVERAL[name]

@@ -70,6 +70,7 @@ def test_their_multipliers_are_those_of_positive_signature(name):
             assert np.abs(known - multiplier).min() < NORMAL_MULTIPLIER
 
 
+@pytest.mark.long
 def test_the_two_of_a_quartet_are_two_solutions():
     """sigma_1 and nu.omega - conj(sigma_1) of mode 7; both were sigma_1 and 2 omega more."""
     found = normal_modes(symfpu.torus(Chain(8, alpha="0.5"), (2,), amplitudes={2: "1.2"}), modes=[1, 7])
@@ -78,6 +79,7 @@ def test_the_two_of_a_quartet_are_two_solutions():
     assert one.real + seven.real == pytest.approx(3, abs=NORMAL_CONVERGED)
 
 
+@pytest.mark.long
 def test_a_mode_that_is_lost_on_the_way_is_said_to_be(monkeypatch):
     """No overlap is enough here. Sought anew it is told by a main coefficient above a half, and else it is missing."""
     before, torus = (found.torus for found in line("past sigma_7 = 5 omega", (7,))[1:])

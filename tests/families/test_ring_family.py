@@ -128,6 +128,7 @@ def test_a_way_back_to_rest_is_seen():
     assert not returned([first, *others], tolerance=1e-13)
 
 
+@pytest.mark.long
 def test_a_folder_goes_on_and_a_file_keeps_it(tmp_path):
     goes = {"from_energy": "0.01", "normal": True}
     expected = family(TODA, (1, -3), "0.03", **goes)

@@ -85,7 +85,11 @@ PRESCRIBED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", PRESCRIBED)
+QUICK = {"energy", "start", "energy of waves"}
+ALL = [pytest.param(name, marks=[] if name in QUICK else pytest.mark.long) for name in PRESCRIBED]
+
+
+@pytest.mark.parametrize("name", ALL)
 def test_what_is_prescribed_is_met_in_doubles_and_to_the_last_digit(name):
     guess, given, measured, value = PRESCRIBED[name]
     doubles = refine(guess(), **given)
@@ -98,6 +102,7 @@ def test_what_is_prescribed_is_met_in_doubles_and_to_the_last_digit(name):
     assert near == pytest.approx(dict(doubles.amplitudes), rel=AMPLITUDE)
 
 
+@pytest.mark.long
 def test_a_file_knows_what_was_prescribed(tmp_path):
     """A run of the same energy goes on; one of another is refused."""
     file = tmp_path / "torus.checkpoint"

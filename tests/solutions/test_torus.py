@@ -115,6 +115,7 @@ def test_the_way_from_rest_leads_to_the_same_torus(name, monkeypatch):
     assert by_steps.residual() < PROMISED_RESIDUAL
 
 
+@pytest.mark.long
 def test_what_is_too_much_says_how_far_it_was_followed():
     """Beyond the barrier of a soft chain."""
     with pytest.raises(NoTorus, match=r"followed from rest to H = .*ask for less, such as energy=") as failure:
