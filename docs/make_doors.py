@@ -435,9 +435,6 @@ VERBS: dict[str, Door] = {
         1,
         *c.words,
     ),
-    "symfpu breather": lambda c: c.verb(
-        "breather", "-N", N, "--seed", 1, "--amplitude", c.size, *c.words
-    ),
     "symfpu export": lambda c: c.verb(
         "export", c.file, "--lang", "numpy", "-o", c.folder / "exported.py"
     ),

@@ -105,6 +105,18 @@ class Floquet(Gridded):
         yield Field("symplecticity", fifteen_digits(self.symplecticity))
         yield Field("map_error", fifteen_digits(self.map_error))
 
+    def _lines(self, width: int | None) -> Iterator[str]:
+        yield repr(self)
+        yield self.multiplier_line
+
+    @property
+    def multiplier_line(self) -> str:
+        """Whether the orbit is stable, by the largest multiplier, for a reader."""
+        kinds = listed(f"{count} {kind}" for kind, count in self.instabilities.items())
+        verdict = "stable" if self.stable else f"unstable: {kinds}"
+        largest = f"the largest |multiplier| {self.largest:.12g}"
+        return f"multipliers        {verdict}, {largest}"
+
     def multiplier_fields(self) -> Iterator[Field]:
         """Without the orbit; every multiplier as its real and imaginary part."""
         parts = [[repr(float(x.real)), repr(float(x.imag))] for x in self.multipliers]

@@ -58,6 +58,6 @@ def solution_of(result: Any, file: str) -> Torus:
         kind = type(result).__name__
         allowed = "a file with a torus or a breather in it"
         opened = f"it holds {kind}, which symfpu show opens"
-        advice = f"{opened}; write one with symfpu solve or breather -o"
+        advice = f"{opened}; write one with symfpu solve -o"
         raise InputError("FILE", file, allowed, advice)
     return result

@@ -77,7 +77,7 @@ def export(
     solution = held if isinstance(held, LindstedtSeries if series else Torus) else None
     if solution is None:
         wanted = "series" if series else "torus"
-        advice = "write one with symfpu solve or breather -o, or export the --series"
+        advice = "write one with symfpu solve -o, or export the --series"
         if series:
             advice = "leave out --series"
         raise InputError("FILE", file, f"a file with a {wanted} in it", advice)

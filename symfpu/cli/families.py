@@ -47,13 +47,11 @@ from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_folder, write_rows
 from symfpu.numbers.counted import counted
 from symfpu.refinement.harmonics import MOST_HARMONICS
-from symfpu.refinement.newton import Newton
 from symfpu.refinement.tori import refine
 from symfpu.reports.family import family_table
-from symfpu.reports.solution import refined_text, solution_record, solution_text
 from symfpu.store.saved_file import load, save
 from symfpu.tori.energy import Energy
-from symfpu.tori.torus import Torus, comes_from
+from symfpu.tori.torus import Torus
 
 ResonanceOption = Annotated[
     str,
@@ -147,10 +145,7 @@ def refine_file(
     if as_json:
         print_json(refined.record())
     else:
-        if comes_from(refined, Newton):
-            say(refined_text(refined))
-        else:
-            say(solution_text(solution_record(refined)))
+        say(refined.text())
         if kept:
             print(f"written: {kept}")
         say_drawn(picture)

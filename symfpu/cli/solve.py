@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from symfpu.breathers.floquet import Floquet, floquet
 from symfpu.chain.chain import Chain
 from symfpu.cli.chains import (
     AlphaOption,
@@ -34,19 +35,17 @@ from symfpu.cli.terminal import (
     whole_numbers,
     width_of,
 )
-from symfpu.cli.tori import print_solution, verdict_of
+from symfpu.cli.tori import verdict_of
 from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.files.progress import NO_FRACTION, Progress
-from symfpu.refinement.newton import Newton
-from symfpu.reports.solution import refined_text, solution_record, solution_text
 from symfpu.solutions.series import series_torus
 from symfpu.solutions.torus import torus
 from symfpu.store.saved_file import save
 from symfpu.tori.energy import Energy
 from symfpu.tori.from_series import FromSeries
 from symfpu.tori.orders import Orders
-from symfpu.tori.torus import Torus, comes_from
+from symfpu.tori.torus import Torus
 from symfpu.tori.verdict import Assessment, assess
 
 EQUAL_SHARES = "equal time averages of E_q of the seeds; --shares S,S,... for others"
@@ -135,6 +134,9 @@ def solve(
             help="Any number of digits, with a bound.  Default: doubles.", metavar="D"
         ),
     ] = None,
+    multipliers: Annotated[
+        bool, typer.Option("--multipliers", help="Floquet multipliers of a breather.")
+    ] = False,
     output: Annotated[
         str | None,
         typer.Option(
@@ -172,8 +174,12 @@ def solve(
     )
     if wish.order is None:
         _refuse_cuts(wish)
-        _by_newton(context, chain, chosen, wish, (output, plot), as_json=as_json)
+        how = {"multipliers": multipliers, "as_json": as_json}
+        _by_newton(context, chain, chosen, wish, (output, plot), **how)
         return
+    if multipliers:
+        allowed = "none with --order, which gives a truncated series"
+        raise InputError("multipliers", True, allowed, "leave out --order")
     file = output_named(output)
     picture = picture_named(plot)
     with progress_bar("series") as advance:
@@ -191,7 +197,7 @@ def solve(
         print_json(record)
         return
     say(f"verdict: {assessment.verdict}")
-    print_solution(found, record)
+    say(found.text())
     if "energy_shares" in record:
         say(f"energy shared      {_shares_text(wish)}")
     say(assessment.text(width_of(sys.stdout)))
@@ -209,9 +215,10 @@ def _by_newton(
     wish: Wish,
     files: tuple[str | None, str | None],
     *,
+    multipliers: bool,
     as_json: bool,
 ) -> None:
-    """The torus that solves the equations of motion, printed and kept.
+    """The torus that solves the equations of motion, printed and kept, with multipliers.
 
     files : of --output and --plot.
     """
@@ -223,20 +230,37 @@ def _by_newton(
                 chain, seeds, **_asked(wish), digits=wish.digits, progress=advance
             )
         doubts = tuple(str(w.message) for w in several if w.category is UserWarning)
+        if multipliers:
+            advance("multipliers", NO_FRACTION)
+        stability = floquet(found) if multipliers else None
         if file:
             verdict = verdict_of(found)
             verdict["reasons"] += doubts
             command = shlex.join(["symfpu", *context.obj])
             save(file, found, verdict=verdict, command=command)
         draw(found.plot, picture)
-    record = solution_record(found, warnings=doubts)
     if as_json:
-        print_json(record)
+        print_json(_record(found, doubts, stability))
         return
-    say(refined_text(found) if comes_from(found, Newton) else solution_text(record))
+    say(found.text())
+    if stability is not None:
+        say(stability.multiplier_line)
+    for doubt in doubts:
+        say(f"warning: {doubt}")
     if file:
         print(f"written: {file}")
     say_drawn(picture)
+
+
+def _record(
+    found: Torus, doubts: tuple[str, ...], stability: Floquet | None
+) -> dict[str, Any]:
+    """A torus for JSON, with doubts besides its own, and with its multipliers."""
+    record = found.record()
+    record["warnings"] += doubts
+    if stability is not None:
+        record |= {field.key: field.value for field in stability.multiplier_fields()}
+    return record
 
 
 def _asked(wish: Wish) -> dict[str, Any]:
@@ -284,7 +308,8 @@ def _found(
         _refuse_on_a_ring(wish)
     found = _torus(chain, seeds, wish, advance)
     assessment = assess(found.origin.series, found, progress=advance)
-    record = solution_record(found, assessment=assessment)
+    record = found.record() | {"verdict": assessment.verdict}
+    record["assessment"] = assessment.record()
     if wish.energy is not None:
         shares = wish.shares or dict.fromkeys(seeds, "1")
         record["energy_shares"] = {str(q): shares[q] for q in found.seeds}

@@ -52,10 +52,6 @@ VERBS = {
         "tori",
         "What a result file holds: any result, its verdict, and what made it.",
     ),
-    "breather": Verb(
-        "breather",
-        "A q-breather, found from exactly one of --omega, --amplitude and --energy.",
-    ),
     "refine": Verb(
         "families",
         "The torus that solves the equations of motion, by Newton's method.",

@@ -19,7 +19,6 @@ from symfpu.paper.corrected_page import (
 from symfpu.paper.series_errors import ScalingStudy, scaling_study
 from symfpu.paper.table import AmplitudeRow, amplitude_table
 from symfpu.paper.table_claims import table_claims
-from symfpu.reports.solution import solution_record
 from symfpu.results.text_tables import markdown_table
 
 SCALED_ROWS = ("Fig. 1", "Fig. 7")  # whose errors are followed to smaller mu
@@ -89,7 +88,7 @@ def row_record(row: AmplitudeRow) -> dict[str, Any]:
         name: list(orders) for name, orders in row.energy_orders.items()
     }
     record["verdict"] = row.verdict
-    record["torus"] = solution_record(row.torus)
+    record["torus"] = row.torus.record()
     return record
 
 

@@ -9,7 +9,7 @@ harmonics of a box a quarter larger says which are missing.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
@@ -97,6 +97,11 @@ class IterativeRefinement(Origin):
     bound: Any
     error: Any
     sweeps: int
+
+    def lines(self, known: Mapping[str, Any]) -> Iterator[str]:
+        """For a reader. known : the record of the torus."""
+        yield f"residual below     {known['residual_bound']}   (at all angles, relative)"
+        yield f"coefficient error  {known['coefficient_error']}   (an estimate, relative)"
 
     def require_whole(self, torus: Torus) -> None:
         if torus.digits is None:

@@ -9,13 +9,14 @@ coefficient, else in long doubles.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from symfpu.files.progress import NO_FRACTION, Progress, unheard
+from symfpu.numbers.counted import counted
 from symfpu.refinement.conditions import Condition, seed_amplitudes
 from symfpu.refinement.invariance import InvarianceEquation
 from symfpu.refinement.lattice import Floats
@@ -38,6 +39,7 @@ AMPLITUDES, COEFFICIENTS = 1e-14, 1e-13
 # relative change to come that ends the iteration, and the one that does when it no longer shrinks
 STEP, ROUNDING_STEP = 1e-16, 1e-9
 ITERATIONS = 15
+SHOWN_DIVISORS = 5  # that readers see
 GROWTH = 30.0  # factor by which iterates may leave the size of the guess
 
 
@@ -134,6 +136,17 @@ class Newton(Origin):
         yield Field("newton", steps)
         yield Field("smallest_divisors", [near.entry() for near in self.near_resonances])
         yield Field("verdict", "doubtful" if torus.warnings else "torus")
+
+    def lines(self, known: Mapping[str, Any]) -> Iterator[str]:
+        """For a reader. known : the record of the torus."""
+        over = "relative, over 25 periods of the slowest seed"
+        yield f"energy constancy   {known['energy_error']:.2g}   ({over})"
+        if self.steps:
+            last = f"the last change {self.steps[-1].change:.1g}"
+            yield f"Newton's method    {counted(len(self.steps), 'step')}, {last}"
+        if self.near_resonances:
+            yield "smallest divisors:"
+        yield from (f"  {near}" for near in self.near_resonances[:SHOWN_DIVISORS])
 
     def facts(self) -> tuple[str, ...]:
         return tuple(f"smallest divisor {nearest}" for nearest in self.near_resonances[:1])

@@ -137,6 +137,15 @@ class FromSeries(Origin):
         orders = range(self.order + 1)
         return tuple(self.series.harmonic_sums(list(self.amplitudes), k) for k in orders)
 
+    def lines(self, known: Mapping[str, Any]) -> Iterator[str]:
+        """For a reader. known : the record of the torus."""
+        yield f"orders             frequency order {self.frequency_order}, order {self.order}"
+        if self.certificate is not None and self.certificate.certified:
+            radius = text(max(self.certificate.radius.values()), 2)
+            yield f"root               exactly one within {radius}: certified"
+        elif self.certificate is not None:
+            yield f"root               not certified: {self.certificate.reason}"
+
     def require_whole(self, torus: Torus) -> None:
         """Its orders and its seeds are those of the series."""
         series, order = self.series, max(order_of(self.order), self.frequency_order)

@@ -92,6 +92,10 @@ class Origin:
         """What only this way of making a torus knows of it."""
         yield from ()
 
+    def lines(self, known: Mapping[str, Any]) -> Iterator[str]:
+        """The same for a reader. known : the record of the torus."""
+        yield from ()
+
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(self.facts())})"
 
@@ -180,6 +184,25 @@ class Torus(Gridded, Generic[Made]):
         yield Field("harmonics", len(self.harmonics), "harmonics")
         yield Field("warnings", list(self.warnings))
         yield from self.origin.fields(self)
+
+    def _lines(self, width: int | None) -> Iterator[str]:
+        """Angles, energies, residual, what its origin knows, and warnings."""
+        known = {field.key: field.value for field in self._fields()}
+        if "verdict" in known:
+            yield f"verdict: {known['verdict']}"
+        yield self.chain.label
+        for q, omega in self.omega.items():
+            A = known["amplitudes"][str(q)]
+            yield f"seed {q:<4} omega {shown_frequency(omega):<20} amplitude {A}"
+        average = f"time average {known['average_harmonic_energy']}"
+        relative = "equations of motion, relative to the largest acceleration"
+        digits = "doubles" if self.digits is None else counted(self.digits, "digit")
+        yield f"energy H           {known['energy']}   (at t = 0)"
+        yield f"harmonic energy    {known['harmonic_energy']}   (at t = 0; {average})"
+        yield f"residual           {known['residual']:.2g}   ({relative})"
+        yield f"harmonics          {known['harmonics']}, in {digits}"
+        yield from self.origin.lines(known)
+        yield from (f"warning: {warning}" for warning in self.warnings)
 
     def _energy_fields(self) -> Iterator[Field]:
         """H and sum E_q at t = 0, and the time average of the latter, with all digits."""

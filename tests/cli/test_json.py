@@ -26,7 +26,7 @@ TORUS = [*CHAIN, "--seeds", "1", "--energy", "0.001", "--order", "2"]
 RULE = split("-N 6 --seeds 1,2 --order 2")
 TODA = ["--potential", "toda:1/2"]
 RING = split("-N 8 --beta 0.3 --ends periodic --seeds 1 --omega 0.77 --order 2")
-BREATHER = ["breather", *CHAIN, "--seed", "1", "--energy", "0.001"]
+BREATHER = ["solve", *CHAIN, "--seeds", "1", "--energy", "0.001"]
 MADE = {"PROOF": ["prove", *RULE, "--model", "beta", "-o"], "TORUS": ["solve", *TORUS, "-o"], "ORBIT": [*BREATHER, "-o"]}
 CASES = {
     "propagate": ["propagate", *RULE],
@@ -41,12 +41,12 @@ LONG = {
     "term, all N": ["term", "-N", "N", *TODA, "--seeds", "1,N-1", "-q", "2", "--order", "2"],
     "term, numbers": ["term", *CHAIN, "--seeds", "1", "-q", "2", "--order", "1", "--omega", "0.77", "--digits", "20"],
     "show": ["show", "TORUS"],
-    "breather": BREATHER,
+    "solve, a breather": BREATHER,
     "refine": ["refine", "TORUS"],
     "prove, another potential": ["prove", *RULE, *TODA],
     "sweep": split("sweep --longest 4 --order 2 --model beta"),
     "solve, a ring": ["solve", *RING],
-    "breather, multipliers": [*BREATHER, "--multipliers"],
+    "solve, multipliers": [*BREATHER, "--multipliers"],
     "family": ["family", *CHAIN, "--seeds", "1", "--to-energy", "0.002", "--from-energy", "0.001"],
     "actions": ["actions", "TORUS"],
     "stability": ["stability", "ORBIT"],
@@ -94,7 +94,7 @@ def verb_of(function):
     return named[0] if named else function.name
 
 
-KEPT = {"solve": "-o", "refine": "-o", "breather": "-o", "family": "--save", "orbit": "--save", "gali": "--save", "sweep": "--save"}
+KEPT = {"solve": "-o", "refine": "-o", "family": "--save", "orbit": "--save", "gali": "--save", "sweep": "--save"}
 OF_THE_RUN = {"seconds", "assessment", "verdict", "warnings"}  # clocks; what the verb judges or doubts besides
 
 

@@ -13,7 +13,7 @@ BEGINNINGS = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
 # "@" stands for the file of a torus
 VERBS = {
     "solve": split("solve -N 8 --alpha 0.3 --seeds 1 --omega 0.3905 --order 4"),
-    "breather": split("breather -N 9 --beta 1 --seed 2 --amplitude 0.3"),
+    "breather": split("solve -N 9 --beta 1 --seeds 2 --amplitudes 0.3"),
     "family": split("family -N 8 --alpha 0.3 --seeds 1 --to-energy 0.001 --from-energy 0.0005"),
     "propagate": split("propagate -N 32 --seeds 3,5 --order 4"),
     "refine": split("refine @"),

@@ -12,7 +12,7 @@ from tests.cli.running import refusal
 SOLVE = "solve -N 16 --alpha 0.33 --seeds 1,2 --omega 0.19626,0.39046 --order 12"
 WISH = "solve -N 4 --alpha 0.3 --seeds 2,1 --order 2"
 FAMILY = "family -N 8 --alpha 0.4 --beta 0.1 --seeds 3 --to-energy 0.05 --from-energy 0.01"
-BREATHER = "breather -N 8 --alpha 0.3 --seed 1"
+BREATHER = "solve -N 8 --alpha 0.3 --seeds 1"
 ATLAS = "atlas --beta 1 --lengths 8 --packets high:1 --order 4 --borders poles"
 ORBIT = "frequencies -N 4 --beta 1 --time 500 --step 0.1"
 MAP = f"{ORBIT} --energies 0.01:0.1:3"
@@ -99,15 +99,15 @@ REFUSED = {
     f"{FAMILY} --multipliers --method appendix-a --order 4": "multipliers = ",
     f"{FAMILY} --multipliers --seeds 1,2": "multipliers = ",
     # breather
-    BREATHER: "exactly one of --omega, --amplitude and --energy; give one of them",
-    f"{BREATHER} --omega 0.39 --energy 0.01 --amplitude 1": "exactly one of",
+    BREATHER: "exactly one of --omega, --energy and --amplitudes; give one of them",
+    f"{BREATHER} --omega 0.39 --energy 0.01 --amplitudes 1": "exactly one of",
     f"{BREATHER} --energy=-0.01": "energy = '-0.01': allowed is a positive number",
     f"{BREATHER} --omega=-1": "frequencies, omega_1 = '-1'",
-    f"{BREATHER} --amplitude 0": "amplitudes = {1: '0'}",
-    f"{BREATHER} --amplitude much": "amplitudes, 1 = 'much'",
+    f"{BREATHER} --amplitudes 0": "amplitudes = {1: '0'}",
+    f"{BREATHER} --amplitudes much": "amplitudes, 1 = 'much'",
     f"{BREATHER} --omega 0.3905 --digits 0": "digits = 0",
-    f"{BREATHER} --omega 0.3905 --seed 8": "seeds = 8",
-    f"{BREATHER} --omega 0.3905 --seed one": "seed = 'one'",
+    f"{BREATHER} --omega 0.3905 --seeds 8": "seeds = 8",
+    f"{BREATHER} --omega 0.3905 --seeds one": "seeds = 'one'",
     # starts
     "orbit --time 100": "exactly one of FILE, --state, --packet and --random; give one of them",
     f"gali FILE --time 100 {START}": "leave the others out",
@@ -214,7 +214,7 @@ FAILING = {
     "solve -N 16 --beta 0.3 --seeds 3 --omega 0.57 --order 1": "no real amplitude",
     "solve -N 16 --alpha 0.3 --seeds 8 --omega 1.42 --order 4": "determine",
     "solve -N 16 --beta 0.3 --seeds 3 --omega 0.9 --order 2": "",
-    "breather -N 8 --alpha 0.3 --seed 1 --omega 0.3": "no real amplitude",
+    "solve -N 8 --alpha 0.3 --seeds 1 --omega 0.3": "no real amplitude",
     "refine FILE --energy 1e9 -o none.symfpu": "no torus of the seeds (1, 3)",
     "orbit FILE --time 10 --step 2": "a step of 2 of kahan_li8 is unstable at time 0 in mode ",
 }

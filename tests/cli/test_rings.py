@@ -44,13 +44,13 @@ def test_refine_takes_the_file_and_show_what_it_made(capsys, saved, tmp_path):
     assert record["residual"] < PROMISED_RESIDUAL
     assert record["energy_error"] < PROMISED_RESIDUAL
     out = shown(capsys, "show", kept)
-    for word in ("verdict: torus", "ends               periodic", "seed -3", "smallest divisors"):
+    for word in ("verdict: torus", "ends='periodic'", "seed -3", "smallest divisors"):
         assert word in out
 
 
 def test_breather_finds_a_wave_with_its_multipliers(capsys, tmp_path):
     kept = tmp_path / "wave.symfpu"
-    words = split("breather -N 5 --potential toda:1/2 --ends periodic --seed=-2 --amplitude 0.5 --multipliers")
+    words = split("solve -N 5 --potential toda:1/2 --ends periodic --seeds=-2 --amplitudes 0.5 --multipliers")
     record = answer(capsys, *words, "-o", kept)
     assert (record["ends"], record["seeds"], record["stable"], record["origin"]) == ("periodic", [-2], True, "Newton")
     assert record["amplitudes"] == {"-2": "0.5"}

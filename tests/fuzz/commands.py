@@ -17,7 +17,6 @@ SOUND = {
     "term": "-N N --alpha 1 --seeds 1,2 -q 3 --order 2",
     "solve": "-N 8 --alpha 0.3 --seeds 1,2 --omega 0.3903,0.7655 --order 3",
     "show": "torus.symfpu",
-    "breather": "-N 8 --alpha 0.3 --seed 1 --energy 0.001",
     "refine": "torus.symfpu",
     "family": "-N 8 --alpha 0.3 --seeds 1 --to-energy 0.0003 --members 3",
     "actions": "torus.symfpu",

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from symfpu import Chain, assess, lindstedt, solve_amplitudes
-from symfpu.reports.solution import solution_record
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +16,7 @@ def torus():
 
 
 def test_a_record_survives_json_without_losing_a_digit(torus):
-    record = json.loads(json.dumps(solution_record(torus)))
+    record = json.loads(json.dumps(torus.record()))
     assert {int(q): float(a) for q, a in record["amplitudes"].items()} == torus.amplitudes
     assert float(record["energy"]) == float(torus.energy())
     assert float(record["harmonic_energy"]) == torus.harmonic_energies().sum()
@@ -54,7 +53,7 @@ def test_the_evidence_of_a_long_series_is_short_and_has_its_best_order(torus):
 
 def test_a_record_of_many_digits_keeps_them():
     torus = solve_amplitudes(lindstedt(Chain(8, alpha="0.3"), (3,), ("1.1125",), 6, digits=30))
-    record = json.loads(json.dumps(solution_record(torus)))
+    record = json.loads(json.dumps(torus.record()))
     assert (record["digits"], record["certified"]) == (30, True)
     assert record["guard_digits"] == torus.origin.series.guard_digits
     with mpmath.workdps(45):

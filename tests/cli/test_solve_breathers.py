@@ -11,7 +11,7 @@ from tests.cli.running import answer, shown
 from tests.tolerances import FIXED_ENERGY, PROMISED_RESIDUAL, RELATIVE_SHIFT
 
 CHAIN = Chain(8, alpha="0.3")
-WORDS = split("breather -N 8 --alpha 0.3 --seed 1")
+WORDS = split("solve -N 8 --alpha 0.3 --seeds 1")
 
 
 def test_by_frequency(capsys, tmp_path):
@@ -27,11 +27,11 @@ def test_by_frequency(capsys, tmp_path):
     kept = symfpu.saved_file(tmp_path / "orbit")
     assert type(kept.result.origin) is HarmonicBalance
     assert (kept.result.cosines == orbit.cosines).all()
-    assert kept.provenance["command"].startswith("symfpu breather -N 8")
+    assert kept.provenance["command"].startswith("symfpu solve -N 8")
 
 
 def test_by_amplitude_and_by_energy(capsys):
-    by_amplitude = answer(capsys, *WORDS, "--amplitude", "0.4")
+    by_amplitude = answer(capsys, *WORDS, "--amplitudes", "0.4")
     assert float(by_amplitude["amplitudes"]["1"]) == 0.4
     by_energy = answer(capsys, *WORDS, "--energy", by_amplitude["energy"])
     assert float(by_energy["amplitudes"]["1"]) == pytest.approx(0.4, rel=RELATIVE_SHIFT)
@@ -39,7 +39,7 @@ def test_by_amplitude_and_by_energy(capsys):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("verb", ["breather --seed 1", "solve --seeds 1"])
+@pytest.mark.parametrize("verb", ["solve --seeds 1"])
 def test_an_energy_that_the_family_passes_twice_is_a_warning(verb, capsys, tmp_path):
     """N = 16, beta = 1: the energy turns at 0.8127. The file keeps it as the reason of its verdict."""
     file = tmp_path / "breather.symfpu"
@@ -51,7 +51,7 @@ def test_an_energy_that_the_family_passes_twice_is_a_warning(verb, capsys, tmp_p
 
 
 def test_many_digits(capsys, tmp_path):
-    found = answer(capsys, *WORDS, "--amplitude", "0.4", "--digits", "30", "-o", tmp_path / "orbit")
+    found = answer(capsys, *WORDS, "--amplitudes", "0.4", "--digits", "30", "-o", tmp_path / "orbit")
     assert found["digits"] == 30
     assert len(found["energy"]) > 30
     assert (found["amplitudes"]["1"], found["warnings"]) == ("0.4", [])
@@ -63,7 +63,7 @@ def test_many_digits(capsys, tmp_path):
 
 
 def test_multipliers(capsys):
-    found = answer(capsys, *WORDS, "--amplitude", "0.4", "--multipliers")
+    found = answer(capsys, *WORDS, "--amplitudes", "0.4", "--multipliers")
     expected = floquet(symfpu.torus(CHAIN, (1,), amplitudes={1: "0.4"}))
     values = np.array([complex(float(x), float(y)) for x, y in found["multipliers"]])
     assert (values == expected.multipliers).all()
@@ -71,6 +71,6 @@ def test_multipliers(capsys):
 
 
 def test_an_unstable_breather_says_how(capsys):
-    text = shown(capsys, *split("breather -N 6 --beta 1 --seed 5 --amplitude 1 --multipliers"), quiet=False)
+    text = shown(capsys, *split("solve -N 6 --beta 1 --seeds 5 --amplitudes 1 --multipliers"), quiet=False)
     assert "unstable: 1 real > 0, the largest |multiplier| 1.201" in text
     assert "seed 5" in text
