@@ -61,7 +61,7 @@ generated: install  ## the gallery of exported evaluators, byte for byte
 equations: install  ## docs/equations.md from the docstrings
 	$(BIN)/python docs/make_equations.py
 
-citation: install  ## CITATION.cff from symfpu/reports/citation.py
+citation: install  ## CITATION.cff from symfpu/results/citation.py
 	$(BIN)/python -c 'import symfpu; print(symfpu.cite("cff"))' > CITATION.cff
 
 doors: install  ## the table of docs/chains.md, by calling every door

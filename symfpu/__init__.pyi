@@ -200,7 +200,7 @@ from symfpu.sweeps.sweep import sweep as sweep
 
 # files, and how to cite
 from symfpu.store.saved_file import SavedFile as SavedFile
-from symfpu.reports.citation import cite as cite
+from symfpu.results.citation import cite as cite
 from symfpu.store.saved_file import load as load
 from symfpu.store.saved_file import save as save
 from symfpu.store.saved_file import saved_file as saved_file

@@ -38,7 +38,7 @@ BORROWED = {
     "plots": "breathers sweeps",
     "proofs": "algebra chain checkers",
     "refinement": "borders numbers",
-    "reports": "families results",
+    "results": "families",
     "series": "algebra chain notebook numbers proofs tori",
     "spectral": "files",
     "store": "algebra checkers files proofs series",

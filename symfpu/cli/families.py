@@ -43,12 +43,12 @@ from symfpu.cli.verbs import app
 from symfpu.errors import InputError
 from symfpu.families.following import METHODS, family
 from symfpu.families.normal_events import RESONANCE_LENGTH
+from symfpu.families.table import family_table
 from symfpu.figures.family import draw_family
 from symfpu.files.writing import output_folder, write_rows
 from symfpu.numbers.counted import counted
 from symfpu.refinement.harmonics import MOST_HARMONICS
 from symfpu.refinement.tori import refine
-from symfpu.reports.family import family_table
 from symfpu.store.saved_file import load, save
 from symfpu.tori.energy import Energy
 from symfpu.tori.torus import Torus

@@ -13,6 +13,7 @@ from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.chain.propagation import excitation_sequence
 from symfpu.checkers.reading import CertificateError
 from symfpu.checkers.verify import CHECKERS, verified_certificate
+from symfpu.cli.certificates import certificate_record
 from symfpu.cli.chains import BondsIfGiven, BondsOption, EndsOption, PotentialOption
 from symfpu.cli.choices import choice
 from symfpu.cli.keeping import SaveOption, file_named, keep, output_named, say_kept
@@ -45,7 +46,6 @@ from symfpu.files.writing import output_file, write_text
 from symfpu.plots.rule import propagation
 from symfpu.proofs.certificates import PropagationProof, prove_propagation
 from symfpu.proofs.sweeps import sweep_markdown, sweep_propagation
-from symfpu.reports.proofs import certificate_record
 
 ALLOWED_CERTIFICATE = "one written by symfpu prove or certify, unaltered"
 MODELS = ("alpha", "beta", "alpha+beta")

@@ -27,16 +27,16 @@ from symfpu.errors import InputError
 from symfpu.families.normal_events import RESONANCE_LENGTH
 from symfpu.families.normal_family import NormalFamily, normal_family
 from symfpu.files.writing import output_folder
-from symfpu.normal.modes import NormalModes
-from symfpu.normal.search import normal_modes
-from symfpu.normal.self_consistent import solve_normal_frequency
-from symfpu.normal.torus import LENGTH
-from symfpu.reports.normal import (
+from symfpu.normal.by_series import (
     BySeries,
     by_series,
     series_records,
     series_text,
 )
+from symfpu.normal.modes import NormalModes
+from symfpu.normal.search import normal_modes
+from symfpu.normal.self_consistent import solve_normal_frequency
+from symfpu.normal.torus import LENGTH
 from symfpu.store.saved_file import load
 from symfpu.tori.torus import Torus
 

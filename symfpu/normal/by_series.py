@@ -1,4 +1,4 @@
-"""Normal frequencies of a torus, for JSON and for the terminal."""
+"""Normal frequencies by their series, beside those that were found: for JSON and for readers."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ from symfpu.errors import ResonantDivisor
 from symfpu.normal.modes import NoNormalModes, NormalMode
 from symfpu.normal.phantom import NormalFrequencySeries
 from symfpu.tori.torus import Torus
-
-SHOWN_RESONANCES = 10
 
 
 class BySeries(NamedTuple):

@@ -1,13 +1,10 @@
-"""Refined tori and families as records for JSON and as lines of text."""
+"""The members of a family as a table of text."""
 
 from __future__ import annotations
 
 import math
 
 from symfpu.families.family import Family
-
-SHOWN_EVENTS = 12
-SHOWN_MEMBERS = 8  # besides the first; the last one is among them
 
 
 def family_table(found: Family) -> list[list[str]]:
