@@ -229,6 +229,9 @@ class SeriesCoefficients:
         if not 0 <= i < len(self.seeds):
             allowed = f"an integer in 0..{len(self.seeds) - 1}, the place of a seed"
             raise InputError("i", i, allowed, "count the seeds from 0")
+        if not 0 <= order <= self.order:
+            allowed = f"an integer in 0..{self.order}, up to the order of the series"
+            raise InputError("order", order, allowed, "compute a longer series")
         linear = self._linear(self.seeds[i])
         if order == 0:
             constant = (0,) * len(self.seeds)

@@ -217,7 +217,7 @@ def saved_file(path: Path | str) -> SavedFile:
         except MemoryError:
             problem = "needs more memory than is free"
             raise BundleError(path, problem, MEMORY_ADVICE) from None
-        except (*DAMAGE, ImportError) as error:
+        except DAMAGE as error:
             reason = " ".join(f"{type(error).__name__} {error}".split())[:LONGEST_REASON]
             advice = "restore it from a copy or compute it again"
             raise BundleError(path, f"is damaged ({reason})", advice) from None

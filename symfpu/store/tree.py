@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, fields, is_dataclass
 from fractions import Fraction
 from functools import cache
-from importlib import import_module
 from math import prod
 from typing import Any, TypeVar, Union, get_args, get_origin, get_type_hints
 
@@ -22,6 +21,7 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
+import symfpu
 from symfpu.chain.chain import Chain
 from symfpu.dynamics.scheme import Scheme
 from symfpu.dynamics.schemes import SCHEMES
@@ -41,22 +41,22 @@ DTYPES = ("<f8", "<c16", "<i8", "|b1")
 SCALARS: dict[str, type[Any]] = {"float64": np.float64, "complex128": np.complex128}
 PLAIN = (bool, int, str, type(None))
 CONTAINERS = ("tuple", "list", "dict")
-OWN = "symfpu."  # modules whose classes a file may name, beside those that are imported
+OWN = "symfpu."
 
 
 def class_name(kind: type) -> str:
-    """A class as files name it."""
-    return f"{kind.__module__}:{kind.__qualname__}"
+    """A class as files name it: one of ours, wherever it stands, by its name alone."""
+    own = kind.__module__.startswith(OWN)
+    return kind.__name__ if own else f"{kind.__module__}:{kind.__qualname__}"
 
 
 def class_named(name: str, hint: Any) -> type[Any]:
     """The class of a name in a file, of a type that annotations allow there.
 
-    ValueError for any other. A module of ours is imported; those of others must be, before.
+    ValueError for any other. A public class of ours is imported; those of others must be, before.
     """
-    module, _, _ = name.partition(":")
-    if module.startswith(OWN) and "__" not in module:
-        import_module(module)
+    if name in symfpu.__all__:
+        getattr(symfpu, name)
     for base in _declared_in(hint):
         for kind in _with_subclasses(base):
             if class_name(kind) == name:

@@ -48,10 +48,17 @@ def chosen(draw):
         verb = "solve"
     words = SOUND[verb].split()
     for _ in range(draw.choice((0, 1, 1, 2))):
-        words = changed(words, draw.choice(options(verb) or ["--json"]), odd(draw), draw)
+        option, value = draw.choice(options(verb) or ["--json"]), odd(draw)
+        if not is_long(option, value):
+            words = changed(words, option, value, draw)
     if draw.random() < 0.3:
         words.append("--json")
     return verb, words
+
+
+def is_long(option, value):
+    """Whether an orbit of this time is a run of hours, which nobody refuses."""
+    return option == "--time" and value.isdecimal() and 10**6 < int(value) < 2**52
 
 
 def changed(words, option, value, draw):

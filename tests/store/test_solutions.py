@@ -45,7 +45,7 @@ def by_seed(*values):
 def step(*values):
     names = ("residual", "change", "conditions", "krylov")
     fields = dict(zip(names, [*({"float": str(x)} for x in values[:3]), *values[3:]], strict=False))
-    return {"tuple": [{"class": "symfpu.refinement.newton:NewtonStep", "fields": fields}]}
+    return {"tuple": [{"class": "NewtonStep", "fields": fields}]}
 
 
 def shape(field, key="shape", **changes):
@@ -67,7 +67,7 @@ def without_harmonics(members, body):
 
 INFINITE = np.full((14, 7), np.inf).ravel()
 OF_ORBITS = {
-    "another origin": (torus_field(origin={"class": "symfpu.chain.chain:Chain", "fields": {}}), "no result is of the class"),
+    "another origin": (torus_field(origin={"class": "Chain", "fields": {}}), "no result is of the class"),
     "an origin that is none": (torus_field(origin=1), "Torus.origin is of the type int"),
     "no torus": (lambda members, body: body.update(result=None), "NoneType is no result"),
     "negative frequency": (torus_field(frequencies=fractions("-1.1")), "do not fit the seeds"),
