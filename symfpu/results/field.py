@@ -77,9 +77,11 @@ def shown_number(value: Any, digits: int | None = None) -> str:
 
 
 def shown_frequency(omega: Fraction) -> str:
-    """As it is typed; a long fraction as a double."""
+    """As it is typed, cut where it is too long; a long fraction as a double."""
     typed = exact_text(omega)
-    return typed if len(typed) <= LONGEST else f"{float(omega):.15g}"
+    if len(typed) <= LONGEST:
+        return typed
+    return f"{float(omega):.15g}" if "/" in typed else f"{typed[:LONGEST]}..."
 
 
 def listed(values: Iterable[Any]) -> str:
