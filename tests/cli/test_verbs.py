@@ -13,7 +13,9 @@ import symfpu.cli
 from symfpu.cli.export import LANGUAGES
 from symfpu.cli.verbs import VERBS, app
 
-FOUNDATIONS = set(split("chains choices __init__ keeping application interrupting main pictures runs starts terminal theorems verbs"))
+FOUNDATIONS = set(
+    split("certificates chains choices __init__ keeping application interrupting main pictures runs starts terminal theorems verbs")
+)
 MODULES = {verb.module for verb in VERBS.values()}
 HEAVY = {"numba", "scipy", "scipy.optimize", "scipy.sparse", "matplotlib", "sympy", "pandas"}
 PROPAGATE = split("propagate -N 8 --seeds 1 --order 2")
