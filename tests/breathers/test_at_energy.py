@@ -13,6 +13,7 @@ from tests.tolerances import (
     NEWTON_RESIDUAL,
     ONE_MODE_FREQUENCY,
     RELATIVE_SHIFT,
+    ROUNDING,
 )
 from tests.tori.test_ring_torus import ring
 
@@ -96,7 +97,7 @@ def test_the_family_ends_at_the_barrier_of_its_potential():
     with pytest.raises(NoBreatherAtEnergy, match=r"the family from rest was followed over 0 \.\. .* ended because: ") as failure:
         symfpu.torus(chain, (4,), energy="50")
     error = failure.value
-    assert 0.97 * barrier < error.reached < barrier
+    assert 0.97 * barrier < error.reached < barrier * (1 + ROUNDING)  # it ends beside it to rounding
     assert (error.seed, error.energy, error.harmonic) == (4, 50.0, False)
     assert error.reason
     member = symfpu.torus(chain, (4,), frequencies=(error.frequency,))
