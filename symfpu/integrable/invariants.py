@@ -65,6 +65,9 @@ class TodaInvariants(Tabled):
     actions: Numbers
     frequencies: Numbers
 
+    def _answer(self) -> str:
+        return "gaps and actions"
+
     def _fields(self) -> Iterator[Field]:
         yield from super()._fields()
         yield Field("", label="chain", shown=f"N={self.N}, a={decimal(self.a)}")

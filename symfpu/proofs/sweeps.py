@@ -31,7 +31,7 @@ from symfpu.proofs.certificates import (
 )
 from symfpu.results.attributes import attributes
 from symfpu.results.field import Field
-from symfpu.results.result import Tabled, table_fields
+from symfpu.results.result import Tabled, columns_field
 from symfpu.results.table import Columns, Table, joined
 from symfpu.results.text_tables import markdown_table
 from symfpu.sweeps.rows import SweepFailure, SweepRow
@@ -100,8 +100,7 @@ class Sweep(Tabled):
         yield Field("cases", len(self.cases), "seed sets")
         failing = [case.entry() for case in self.exceptions]
         yield Field("exceptions", failing, "exceptions", str(len(failing)))
-        (columns,) = (x for x in table_fields(self._table(), set()) if x.key == "columns")
-        yield columns
+        yield columns_field(self._table())
 
     def __repr__(self) -> str:
         count = Counter(case.verdict for case in self.cases)

@@ -1,1 +1,1 @@
-"""Results as tables of pandas and as data sets of xarray."""
+"""What a result is: declared fields, and from them its record, text, HTML, table and data set."""

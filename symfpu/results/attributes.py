@@ -19,7 +19,7 @@ RADIANS = "radians"
 
 
 class SomeChain(Protocol):
-    """What a table says of a chain."""
+    """What results say of a chain."""
 
     @property
     def N(self) -> int: ...
@@ -27,6 +27,10 @@ class SomeChain(Protocol):
     def ends(self) -> str: ...
     @property
     def typed_law(self) -> dict[str, str]: ...
+    @property
+    def typed(self) -> dict[str, Any]: ...
+    @property
+    def label(self) -> str: ...
 
 
 def attributes(result: object, chain: SomeChain | None = None, **more: Any) -> Attributes:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from symfpu.numbers.arithmetic import text
+from symfpu.results.attributes import SomeChain
 from symfpu.results.numbers import exact_text, number_text
 
 PLACES = 12  # digits of doubles that readers see
@@ -32,16 +33,7 @@ class Field(NamedTuple):
         return self.shown or str(self.value)
 
 
-class KnownChain(Protocol):
-    """What fields say of a chain."""
-
-    @property
-    def typed(self) -> dict[str, Any]: ...
-    @property
-    def label(self) -> str: ...
-
-
-def chain_fields(chain: KnownChain) -> Iterator[Field]:
+def chain_fields(chain: SomeChain) -> Iterator[Field]:
     """A chain, as it is typed."""
     yield Field("", label="chain", shown=chain.label)
     yield from (Field(key, value) for key, value in chain.typed.items())

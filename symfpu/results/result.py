@@ -114,7 +114,7 @@ class Result(ABC):
             shown = f'<img alt="{words}" src="data:image/png;base64,{data}">'
         labelled = [field for field in self._fields() if field.label]
         rows = [ROW.format(escape(field.label), escape(field.text)) for field in labelled]
-        head = escape(f"{name}: {self._answer()}")
+        head = escape(": ".join(filter(None, (name, self._answer()))))
         return PAGE.format(head=head, rows="".join(rows), picture=shown)
 
 
@@ -159,13 +159,18 @@ class Tabled(Result):
         return self._table().frame()
 
 
+def columns_field(table: Table) -> Field:
+    """The columns of a table."""
+    columns = table.columns.items()
+    return Field("columns", {name: json_value(list(values)) for name, values in columns})
+
+
 def table_fields(table: Table, known: set[str]) -> Iterator[Field]:
     """What holds for a whole table besides what is known, and its columns (docs/tables.md)."""
     left_out = {"result", "units", "chain", "symfpu_version", *known}
     about = {key: value for key, value in table.attributes.items() if key not in left_out}
     yield Field("about", json_value(about))
-    columns = table.columns.items()
-    yield Field("columns", {name: json_value(list(values)) for name, values in columns})
+    yield columns_field(table)
     for key, value in about.items():
         yield Field("", label=key.replace("_", " "), shown=str(value))
 

@@ -85,6 +85,7 @@ REFUSED = [
     *((plots.propagation, lambda wrong=wrong: wrong, {}, "result =") for wrong in ([], [3], [("a",)], ["ab"], 3, None)),
     (plots.propagation, cases.sequence, {"N": 8}, "N ="),
     *((plots.toda_gaps, lambda: np.ones(8), {"modes": wrong}, "modes =") for wrong in ((1, 2), (1,) * 8, "12345678")),
+    (plots.lines, lambda: 3, {}, "FrequencyAnalysis"),
     (plots.family_multipliers, cases.pair, {}, "multipliers=True"),
     (plots.toda_gaps, cases.gaps, {}, "times ="),
     (plots.toda_gaps, cases.invariants, {"times": [0.0]}, "times ="),

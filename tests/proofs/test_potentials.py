@@ -5,11 +5,12 @@ from fractions import Fraction
 
 import pytest
 
-from symfpu import Chain, InputError, coupling_sequence, lindstedt, prove_propagation, sweep_propagation
+from symfpu import Chain, InputError, coupling_sequence, lemma_holds, lindstedt, prove_propagation, sweep_propagation
 from symfpu.chain.potentials.toda import Toda
 from symfpu.chain.potentials.typed import potential_of_text
 from symfpu.checkers.propagation import NAMED_POTENTIALS, verify
 from symfpu.checkers.reading import CertificateError
+from symfpu.proofs.leading import leading_terms
 from tests.checkers.certificate_files import sealed
 from tests.checkers.test_forgeries import is_valid
 from tests.checkers.test_propagation import SAYS
@@ -168,6 +169,12 @@ class Rounded(Toda):
 def test_what_proves_nothing_is_refused_by_name(name, value):
     """Also a model beside a potential."""
     refused(prove_propagation, name, value, N=6, seeds=(1,), order=2, potential="toda:1")
+
+
+@pytest.mark.parametrize("closed_form", [lambda chain: leading_terms(chain, (1,), 2), lambda chain: lemma_holds(chain, (1,), 2)])
+def test_closed_forms_of_both_models_refuse_other_chains_by_name(closed_form):
+    with pytest.raises(InputError, match=r"^chain = .*toda\(0\.5\)"):
+        closed_form(Chain(8, potential="toda:1/2"))
 
 
 # --- sweeps

@@ -13,6 +13,7 @@ from symfpu import Chain, InputError, ResonantDivisor, lindstedt, load, sample_s
 from symfpu.algebra.formulas import NodeTable
 from symfpu.errors import VanishingResidue
 from symfpu.proofs.certificates import random_point
+from symfpu.series.coefficients import ResiduePoint
 from symfpu.series.residues import residue_series
 from tests.oracles.cases import DEEP, SHALLOW
 from tests.oracles.residues import coordinates_modulo
@@ -109,6 +110,8 @@ def test_frequencies_that_make_a_multiplier_infinite_are_named():
         series.at(("0.39", "0.78"), digits=20)
     with pytest.raises(ResonantDivisor, match=r"= 0 at order 1, mode [12], harmonic .*: the frequencies are commensurable"):
         sample_series(series, [[0.391, 0.77], [0.390625, 0.78125]])
+    with pytest.raises(VanishingResidue):
+        coordinates_modulo(series, ResiduePoint(97, pow(5, 3, 97), (1, 2)))
 
 
 def test_series_without_a_program_are_refused():

@@ -4,6 +4,8 @@ import pytest
 
 import symfpu
 from symfpu import BundleError, Chain, InputError, integrate, load, prove_existence, save, saved_file
+from symfpu.results.result import Result
+from symfpu.store.tree import _with_subclasses, class_name
 from tests.every_result import result
 from tests.store.test_damage import forged
 from tests.store.test_saved_file import same
@@ -61,6 +63,16 @@ FORGERIES = {
     "an empty node": field("Q", {}),
     "no parts": lambda members, body: body.pop("parts"),
 }
+
+
+def test_a_name_in_a_file_is_of_one_class():
+    """Among results, and among origins of tori: files have their names alone."""
+    for name in symfpu.__all__:
+        getattr(symfpu, name)
+    for base in (Result, symfpu.Origin):
+        names = [class_name(kind) for kind in _with_subclasses(base)]
+        assert len(names) == len(set(names))
+        assert len(names) > 5
 
 
 @pytest.mark.parametrize("case", FORGERIES)
