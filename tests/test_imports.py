@@ -41,7 +41,7 @@ BORROWED = {
     "results": "families",
     "series": "algebra chain notebook numbers proofs tori",
     "spectral": "files",
-    "store": "algebra checkers files proofs series",
+    "store": "algebra checkers files proofs results series",
     "sweeps": "algebra files",
     "tori": "chain numbers series",
 }
