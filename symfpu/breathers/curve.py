@@ -221,15 +221,23 @@ def settled(
         if grows and made:
             raise NotOnTheCurve("the corrections grow", None)
         if grows or relative > SLOW * before:
-            if near and relative < ROUNDING_STEP:  # nothing is left but rounding
+            rounding = relative < ROUNDING_STEP or _is_rounding(balance, change, moved)
+            if near and rounding:  # nothing else is left
                 return z, count, linear
             if (made := made + 1) > MOST_LINEARISATIONS:
                 break
-            near = relative < NEARLY_THERE
+            near = rounding or relative < NEARLY_THERE
             z = z if near or made > 1 else guess
             linear, relative = Linearisation(balance, z), np.inf
         before = relative
     raise NotOnTheCurve("the corrections do not converge", None)
+
+
+def _is_rounding(balance: Balance, change: Floats, moved: float) -> bool:
+    """Whether a correction leaves omega^2 as it is in doubles: a shift may be zero but for that."""
+    linear = float(balance.chain.frequencies()[balance.seed - 1])
+    least = float(np.finfo(float).eps) * linear**2
+    return moved < ROUNDING_STEP and abs(float(change[-1])) < least
 
 
 def _relative(change: float, value: float) -> float:

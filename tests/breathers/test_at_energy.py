@@ -105,6 +105,14 @@ def test_the_family_ends_at_the_barrier_of_its_potential():
     assert member.amplitude == pytest.approx(error.amplitude, rel=RELATIVE_SHIFT)
 
 
+@pytest.mark.parametrize("energy", ["1e-20", "0.001", "0.01", "1"])
+def test_a_mode_that_stays_harmonic_has_every_energy(energy):
+    """N = 2, alpha: the two bonds cancel, and all of its shift is rounding."""
+    found = symfpu.torus(Chain(2, alpha="0.3"), (1,), energy=energy)
+    assert float(found.frequency) == pytest.approx(2**0.5, rel=RELATIVE_SHIFT)
+    assert found.amplitude == pytest.approx(float(energy) ** 0.5, rel=RELATIVE_SHIFT)
+
+
 @pytest.mark.parametrize("energy", [0, -1, "one", float("inf")])
 def test_energies_that_select_no_orbit_are_refused(energy):
     with pytest.raises(InputError, match=r"^energy = "):
